@@ -274,6 +274,48 @@ fn every_page_is_complete() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
+/// The most words in a paragraph of a page.
+const LONGEST: usize = 120;
+
+/// The paragraphs of a Markdown text, each item of a list one of its own, without headings, tables and blocks of code.
+fn paragraphs(text: &str) -> Vec<String> {
+    let (mut all, mut open, mut code) = (vec![], String::new(), false);
+    for line in text.lines().map(str::trim) {
+        code ^= line.starts_with("```");
+        let outside = code || line.is_empty() || ["```", "#", "|"].iter().any(|mark| line.starts_with(mark));
+        if outside || line.starts_with("- ") {
+            all.push(std::mem::take(&mut open));
+        }
+        if !outside {
+            let _ = write!(open, "{line} ");
+        }
+    }
+    all.push(open);
+    all.retain(|paragraph| !paragraph.is_empty());
+    all
+}
+
+#[test]
+fn paragraphs_are_short() {
+    let mut wrong = String::new();
+    for page in pages() {
+        for paragraph in paragraphs(&page.markdown()) {
+            let count = paragraph.split_whitespace().count();
+            if count > LONGEST {
+                let start: Vec<&str> = paragraph.split_whitespace().take(8).collect();
+                let _ = writeln!(wrong, "{}: {count} words: {} …", page.title(), start.join(" "));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "paragraphs of more than {LONGEST} words:\n{wrong}");
+}
+
+#[test]
+fn paragraphs_end_at_empty_lines_items_tables_and_code() {
+    let text = "# page\n\na b\nc\n- d\n  e\n- f\n```text\ng\n```\nh\n| i |\n";
+    assert_eq!(paragraphs(text), ["a b c ", "- d e ", "- f ", "h "]);
+}
+
 #[test]
 fn links_lead_somewhere() {
     let mut wrong = String::new();

@@ -52,8 +52,9 @@ fn choose(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Re
     }
     let style = style(&graph.tables.pairs, "pair", args)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let options = style.options();
     match args.peek() {
-        Some(word) if !style.options().is_empty() => return Err(args.unknown(word, style.options())),
+        Some(word) if !options.is_empty() => return Err(args.unknown(word, &options)),
         _ => args.finish()?,
     }
     graph.pair = Some(PairNode { pair, span: cx.span, lines: vec![] });

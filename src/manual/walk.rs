@@ -89,7 +89,7 @@ impl Declared {
     /// Its words as they are shown, and which of them the word after those typed is.
     pub fn shown(&self, typed: &[&str]) -> (Vec<String>, Option<usize>) {
         let (parts, keywords) = (self.grammar.in_order(), self.grammar.every());
-        let groups = keywords.iter().map(|k| format!("[{}]", k.shown()));
+        let groups = keywords.iter().map(|k| k.bracketed());
         let words: Vec<String> =
             self.head.iter().cloned().chain(parts.iter().map(|p| p.shown())).chain(groups).collect();
         let n = typed.len();
@@ -139,7 +139,7 @@ impl Walk<'_> {
             }
             if !passed {
                 self.rest.extend(parts[k + 1..].iter().map(|part| part.shown()));
-                self.rest.extend(all.iter().map(|keyword| format!("[{}]", keyword.shown())));
+                self.rest.extend(all.iter().map(|keyword| keyword.bracketed()));
                 return;
             }
         }
@@ -161,7 +161,7 @@ impl Walk<'_> {
     fn offer_keywords(&mut self, all: &[&'static Keyword], used: &[&str]) {
         for keyword in all.iter().filter(|k| k.repeats || !used.contains(&k.word)) {
             self.offers.push(Offer::Word(keyword.word, keyword.about));
-            self.rest.push(format!("[{}]", keyword.shown()));
+            self.rest.push(keyword.bracketed());
         }
     }
 
@@ -230,7 +230,7 @@ impl Walk<'_> {
     /// Passes what a word of a kind takes.
     fn taken(&mut self, kind: Kind) -> bool {
         match kind {
-            Kind::Choice(all) => {
+            Kind::Choice(all) | Kind::Models(all) => {
                 let word = self.typed[self.at];
                 self.at += 1;
                 match all.iter().find(|a| a.word == word) {
@@ -268,7 +268,7 @@ impl Walk<'_> {
 
     fn offer(&mut self, place: &Placeholder, kind: Kind) {
         match kind {
-            Kind::Choice(all) => {
+            Kind::Choice(all) | Kind::Models(all) => {
                 let about = |own: &'static str| if own.is_empty() { place.about } else { own };
                 self.offers.extend(all.iter().map(|a| Offer::Word(a.word, about(a.about))));
             }

@@ -74,51 +74,59 @@ impl Style for Calibrate {
 
 /// The page's text.
 const DOC: &str = "\
-    Statics of a body of bonded particles as it stands now: no time passes, nothing moves; displacements are small and directions stay, unless `large yes` or `mu` is said. \
-    Stiffnesses of bonds come from the bond style: `bpm/beam` and `bpm/rotational` have all four (stretch, shear, twist, bend), `bpm/spring` \
-    and `harmonic` resist stretch alone. After Jarolin and Dosta, Comput. Part. Mech. 8 (2021) 1065.\n\n\
-    **dsm**, the direct stiffness method: both ends of the body along the axis are held and come closer by S times their distance (S below 0 \
-    presses). An end is made of all particles whose surface is within T (by default the mean radius) of the outermost one. `grip` (the default) holds its \
-    particles wholly, `plate` along the axis only; `wall` is a rigid plane at the outermost surface that pushes what touches it, by Hertz' law with \
-    the pair style's coefficients and twice the stiffness of two such particles. Particles turn unless `rotations no` is given, which makes \
-    a body some percent too stiff. The field begins with the affine one and is improved by conjugate gradients until three times \
-    what the last five steps have taken from the energy is below the part P of it (default 0.01): K approaches from above. That is an estimate and no bound: K of four random \
-    packings was 2 to 5 times nearer than P, of inverse opals 6 to 13 times. \
-    Bodies that do not follow the load evenly (struts that bend, pores) are solved by clusters of particles that move as rigid bodies from the 15th step on: \
-    one of 2·10⁶ bonds around pores takes 66 steps to 1e-5 in place of 449. ν is of the field and converges as the root of that. \
-    `bound yes` continues until a lower bound proves it, for two `grip` ends and bonds alone. `method paper` begins from zero and stops at a residual |r| \
-    below FL (linear, 1e-6) and FN (with contacts, 1e-3) in force units. Pieces that nothing holds are left out and counted.\n\n\
-    Contacts between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is given: pairs \
-    whose bonds do not bar them (`special_bonds`), found once, closed and opened by Newton's method, without slip. The force that overlaps have before the load is \
-    taken away, `prestress keep` leaves it. K is F/Δ then.\n\n\
-    `large yes` lets displacements and turns be of any size: bonds are those of `bpm/beam` with the given stiffnesses (springs where these resist stretch alone), contacts push along the line of centres as it \
-    is, and what they bear across counts from where they came to touch. K is F/Δ under the strain S, as a slow run has it: bodies whose struts bend (inverse opals) are 3 to 6 % off at 2 % without it. \
-    `mu M` does the same and lets surfaces slip where they bear M times the normal force: agglomerates in which contacts carry much are up to twice too stiff without it, within a percent of a run with it. Walls stay without friction. \
-    The load is put on in N `steps` (default 1), each balanced by Newton's method; K of an agglomerate with 80 % of its contacts slipping changed by 0.05 % from 1 to 20. Contacts that cannot slip at all may have no balance, which gives a warning; so do contacts that bear more than a tenth of the energy where no `mu` is given.\n\n\
-    **ste**, the estimate of the tensor: order 0 lets all particles follow the strain, 1 and 2 are those of the paper (default 2), N from 3 on takes N sweeps. No \
-    boundary conditions: on bodies with free faces 5 to 15 % off. Where struts bend between pores it is worthless, 4 to 7 times too stiff in inverse opals: \
-    of bodies with less than 40 % of solid a dozen steps of `dsm` look whether it is, and a warning says so. `calibrate dsm … tol 0.1` is 1 % off there. `slabs` puts layers of two diameters (or H) one behind the other; walls are put in series. Contacts \
-    that close under the strain count as springs; with `mu M` as those of the whole way to it, and across as far as M lets them bear. `map stiffness D` gives each particle the K along x, y, z that the body had if all of it were like the ball of radius D \
-    around the particle, `map deviation D` by which part these are below their mean (positive is softer): c_ID[1] to [3] per particle.\n\n\
-    **periodic**: the tensor of a cell that repeats in all directions, from six load cases, with the mean field beside.\n\n\
-    **strength** loads the body ever more, up (S above 0 pulls, below 0 presses; its size does not matter): all that bonds bear is proportional to the load, so the one nearest to its strength \
-    gives the load at which it breaks (`strength`, `criterion`, `weibull` of bpm/beam, the limits of bpm/rotational and bpm/spring); without it the body is solved again from where it was, to the part P \
-    (`tol`, default 1e-4) of what the break has changed, and so on until the force is below `until` P (default 0.5) of the largest one, `most` N breaks have been, or the body is in two. \
-    Where that leaves other bonds beyond their strength the ends stand still and all of these go together (`avalanche all`), or they go back until one bond at a time breaks (`avalanche one`), which is the most the body could bear. \
-    `together P` lets bonds that lack less than the part P of the load go with those that break: the way of a body of which some strengths are up to P smaller, in far fewer solutions (90,000 bonds with P of 0.005: a quarter of the time, 0.2 % less). After Schlangen and van Mier, Cem. Concr. Compos. 14, 105 (1992). \
-    A slow, damped run follows the same breaks until the first avalanche swings beyond where it will come to rest: three packings bore 0.3 to 3 % less. Small displacements, no waves, no contacts (cracks that close bear nothing, so that strength under pressure is underestimated), no damping, `smooth` left out. `curve FILE` writes the breaks: number, strain, force, stress, energy set free at \
-    ends that stand still, and the IDs of the bond. `fields yes` keeps the motion at the largest force.\n\n\
-    **fit** varies coefficients (`E`, `nu`, `radius`, `strength` of bpm/beam, `radius` the ratio where that is given, `kr ks kt kb strength` of bpm/rotational, `k` of springs) of bond types until the targets are reached to the part P (default 0.005), and sets \
-    them as `bond_coeff` lines would; K is N/m of dsm and ste, the bulk modulus of periodic, strength the largest force over the section. `strength` multiplies all strengths of a type. \
-    A strength is looked for once the other targets are reached, with `together` 0.005 unless another part is given and to 1e-3 of what a break has changed, and only once where all strengths vary: it is proportional to them. One coefficient that all bonds are proportional to takes one solve. Where \
-    there are fewer targets than coefficients the change is the smallest one, and a note names the direction left open.\n\n\
-    Results are a vector: c_ID[1] K, [2] E, [3] ν, [4] the lower and [5] the upper bound of K (NaN where there is none), [6] the force, [7] the displacement \
-    Δ of the high end, [8] iterations (ste: the order), [9] the share of contacts and walls in the energy (ste: in Σ k L²), [10] particles left out. E = K l/A with the distance l of the \
-    ends (`length body`: of the outermost surfaces) and the section A: `block` the product of both widths, `cylinder` π D²/4 of the mean width, or given. Of periodic: \
-    [1] bulk modulus, [2] and [3] E and ν, means over the axes, [5] the bulk modulus of the mean field, [6] shear modulus (both the mean of the bounds of Voigt and Reuss), \
-    [7] the volume. Of strength: [1] the largest force, [2] that over the section, [3] the strain there, [4] to [6] K, E and ν of the unbroken body, [7] bonds broken before it and [8] in all, [9] the energy \
-    they set free, [10] the force at the first break. Of fit: those of its method, and from [11] on the coefficients found, in the order of the words `vary`. periodic and ste have the tensor c_ID[i][j], too (xx yy zz yz xz xy, engineering shears). `fields yes`: per particle c_ID[1] to [3] the \
-    displacement, [4] to [6] the rotation. Particles without a radius count as spheres that reach half way to their partners.";
+    Statics of a body of bonded particles as it stands now: no time passes, nothing moves; displacements are small and directions stay, unless `large yes` \
+    or `mu` is given. Stiffnesses of bonds come from the bond style: `bpm/beam` and `bpm/rotational` have all four (stretch, shear, twist, bend), \
+    `bpm/spring` and `harmonic` resist stretch alone. Pieces that nothing holds are left out and counted. Particles without a radius count as spheres that \
+    reach half way to their partners. After Jarolin and Dosta, Comput. Part. Mech. 8 (2021) 1065.\n\n\
+    **dsm**: the field begins with the affine one and is improved by conjugate gradients until three times what the last five steps have taken from the \
+    energy is below the part P (`tol`) of it: K approaches from above. That is an estimate and no bound: K of four random packings was 2 to 5 times nearer \
+    than P, of inverse opals 6 to 13 times. ν is of the field and converges as the root of that.\n\n\
+    Bodies that do not follow the load evenly (struts that bend, pores) are solved by clusters of particles that move as rigid bodies from the 15th step \
+    on: one of 2·10⁶ bonds around pores takes 66 steps to 1e-5 in place of 449.\n\n\
+    **Contacts** between particles count where the pair style has Hertz contacts (`hertz/material … tangential mindlin NULL …`) unless `contacts no` is \
+    given: pairs whose bonds do not bar them (`special_bonds`), found once, closed and opened by Newton's method, without slip. K is F/Δ then.\n\n\
+    **`large yes`**: bonds are those of `bpm/beam` with the given stiffnesses (springs where these resist stretch alone), contacts push along the line of \
+    centres as it is, and what they bear across counts from where they came to touch. K is F/Δ under the strain S, as a slow run has it: bodies whose \
+    struts bend (inverse opals) are 3 to 6 % off at 2 % without it.\n\n\
+    **`mu M`** does the same as `large yes` and lets surfaces slip where they bear M times the normal force: agglomerates in which contacts carry much are \
+    up to twice too stiff without it, within a percent of a run with it. Walls stay without friction. Each of the `steps` of the load is balanced by \
+    Newton's method; K of an agglomerate with 80 % of its contacts slipping changed by 0.05 % from 1 to 20. Contacts that cannot slip at all may have no \
+    balance, which gives a warning; so do contacts that bear more than a tenth of the energy where no `mu` is given.\n\n\
+    **ste**: on bodies with free faces 5 to 15 % off. Where struts bend between pores it is worthless, 4 to 7 times too stiff in inverse opals: of bodies \
+    with less than 40 % of solid a dozen steps of `dsm` look whether it is, and a warning says so. `calibrate dsm … tol 0.1` is 1 % off there. Walls are \
+    put in series with the slabs. Contacts that close under the strain count as springs; with `mu M` as those of the whole way to it, and across as far as \
+    M lets them bear. `map` gives c_ID[1] to [3] per particle.\n\n\
+    **strength** loads the body ever more: S above 0 pulls, below 0 presses; its size does not matter. All that bonds bear is proportional to the load, so \
+    the one nearest to its strength gives the load at which it breaks (`strength`, `criterion`, `weibull` of bpm/beam, the limits of bpm/rotational and \
+    bpm/spring). Without it the body is solved again from where it was, to the part P (`tol`) of what the break has changed. This ends when the force is \
+    below `until` P of the largest one, after `most` N breaks, or when the body is in two.\n\n\
+    - `avalanche` applies where a break leaves other bonds beyond their strength.\n\
+    - `together P` gives the way of a body of which some strengths are up to P smaller, in far fewer solutions (90,000 bonds with P of 0.005: a quarter of \
+    the time, 0.2 % less).\n\
+    - Small displacements, no waves, no contacts (cracks that close bear nothing, so that strength under pressure is underestimated), no damping, `smooth` \
+    left out.\n\
+    - A slow, damped run follows the same breaks until the first avalanche swings beyond where it will come to rest: three packings bore 0.3 to 3 % less.\n\n\
+    After Schlangen and van Mier, Cem. Concr. Compos. 14, 105 (1992).\n\n\
+    **fit** varies the coefficients until the targets are reached to the part P (`tol`); K is N/m of dsm and ste. `radius` of bpm/beam is the ratio where \
+    that is given; `strength` multiplies all strengths of a type. A strength is searched for once the other targets are reached, to 1e-3 of what a break \
+    has changed, and only once where all strengths vary: it is proportional to them. One coefficient that all bonds are proportional to takes one solve. \
+    Where there are fewer targets than coefficients the change is the smallest one, and a note names the direction left open.\n\n\
+    Results are a vector, with the distance l of the ends, the section A and E = K l/A:\n\n\
+    | | dsm, ste | periodic | strength |\n\
+    |---|---|---|---|\n\
+    | c_ID[1] | K | bulk modulus | the largest force |\n\
+    | c_ID[2] | E | E, mean over the axes | the largest force over the section |\n\
+    | c_ID[3] | ν | ν, mean over the axes | the strain there |\n\
+    | c_ID[4] | lower bound of K (NaN where there is none) | | K of the unbroken body |\n\
+    | c_ID[5] | upper bound of K (NaN where there is none) | bulk modulus of the mean field | its E |\n\
+    | c_ID[6] | the force | shear modulus | its ν |\n\
+    | c_ID[7] | the displacement Δ of the high end | the volume | bonds broken before the largest force |\n\
+    | c_ID[8] | iterations (ste: the order) | | bonds broken in all |\n\
+    | c_ID[9] | share of contacts and walls in the energy (ste: in Σ k L²) | | the energy they set free |\n\
+    | c_ID[10] | particles left out | | the force at the first break |\n\n\
+    Bulk and shear modulus of periodic are means of the bounds of Voigt and Reuss. fit has the results of its method, and from c_ID[11] on the \
+    coefficients found, in the order of the words `vary`. periodic and ste have the tensor c_ID[i][j], too (xx yy zz yz xz xy, engineering shears). \
+    `fields yes`: per particle c_ID[1] to [3] the displacement, [4] to [6] the rotation.";
 
 /// Which calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -37,13 +37,20 @@ impl Style for AtomStyleCommand {
                 "atom_style atomic | sphere [0|1] | peri | bond | angle | molecular | full | charge | dipole | bpm/sphere | hybrid STYLE STYLE …",
             ),
             summary: "Says which properties particles have.",
-            text: "`atomic`: mass by type. `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that change (`fix adapt`) \
-                   is read and not needed. `peri`: volume, \
-                   position at creation, own mass (in LAMMPS' convention its density). `bond`: bonds, molecule IDs, mass by \
-                   type; `angle` and `molecular` have angles between bonds besides, which are kept and exert nothing (`angle_style zero`). `charge`: a charge, which `fix efield` pulls; charges do not feel each other here. `dipole`: a charge and a dipole moment, \
-                   which `fix efield` turns and `fix nve/sphere … update dipole` lets follow the spin (`hybrid sphere dipole`). `full`: what `molecular` and `charge` have. `bpm/sphere`: bonds, molecule IDs, and what \
-                   `sphere` has. `hybrid sphere peri`, `hybrid sphere bond` … have what each of them has; \
-                   the mass is one column. Must come before the box. Default: `atomic`.",
+            text: "Must come before the box. Default: `atomic`.\n\n\
+                   - `atomic`: mass by type.\n\
+                   - `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that \
+                   change (`fix adapt`) is read and not needed.\n\
+                   - `peri`: volume, position at creation, own mass (in LAMMPS' convention its density).\n\
+                   - `bond`: bonds, molecule IDs, mass by type.\n\
+                   - `angle` and `molecular`: what `bond` has, and angles between bonds, which are kept and exert nothing \
+                   (`angle_style zero`).\n\
+                   - `charge`: a charge, which `fix efield` pulls; charges do not feel each other here.\n\
+                   - `full`: what `molecular` and `charge` have.\n\
+                   - `dipole`: a charge and a dipole moment, which `fix efield` turns and `fix nve/sphere … update dipole` lets \
+                   follow the spin (`hybrid sphere dipole`).\n\
+                   - `bpm/sphere`: bonds, molecule IDs, and what `sphere` has.\n\
+                   - `hybrid sphere peri`, `hybrid sphere bond` …: what each of them has; the mass is one column.",
             example: "atom_style hybrid sphere peri",
         }
     }

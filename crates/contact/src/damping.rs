@@ -39,7 +39,7 @@ impl Damping {
     ];
 
     /// The word in decks.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Damping::None => "none",
             Damping::Velocity => "velocity",
@@ -49,6 +49,22 @@ impl Damping {
             Damping::CoeffRestitution => "coeff_restitution",
             Damping::Mdr => "mdr 1",
             Damping::MdrConstant => "mdr 2",
+        }
+    }
+
+    /// Its formula, for the help page.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Damping::None => "No damping.",
+            Damping::Velocity => "η = eta.",
+            Damping::MassVelocity => "η = eta m̄.",
+            Damping::Viscoelastic => "η = eta a m̄.",
+            Damping::Tsuji => "η = √2 α_T(e) √(m̄ k), for hooke 2/√5 of it.",
+            Damping::CoeffRestitution => {
+                "η = 2β √(m̄ k) for hooke and √5 β √(m̄ k) for the others, β = −ln e/√(π²+ln²e)."
+            }
+            Damping::Mdr => "η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2.",
+            Damping::MdrConstant => "η = e.",
         }
     }
 

@@ -47,7 +47,7 @@ impl Friction {
     ];
 
     /// The word in decks.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Friction::None => "none",
             Friction::LinearNohistory => "linear_nohistory",
@@ -61,9 +61,33 @@ impl Friction {
         }
     }
 
+    /// What its spring is, for the help page.
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Friction::None => "Smooth spheres.",
+            Friction::LinearNohistory => "No spring.",
+            Friction::LinearHistory => "k_t = kt.",
+            Friction::LinearHistoryClassic => {
+                "k_t = kt; drops the part of ξ along the normal, as pair_style gran/hooke/history."
+            }
+            Friction::Mindlin => "k_t = kt a, and with `NULL` 8 G* a, 1/G* = (2−ν_i)/G_i + (2−ν_j)/G_j.",
+            Friction::MindlinClassic => {
+                "k_t = kt a; drops the part of ξ along the normal, as pair_style gran/hertz/history."
+            }
+            Friction::MindlinForce => "The same k_t; remembers the force, dF = −k_t v_t dt.",
+            Friction::MindlinRescale => {
+                "The same k_t; ξ shrinks with a when the contact unloads, so that unloading makes no energy (Thornton et al. \
+                 2013)."
+            }
+            Friction::MindlinRescaleForce => {
+                "The same k_t; remembers the force, which shrinks with a when the contact unloads."
+            }
+        }
+    }
+
     /// Whether k_t is multiplied by the contact radius.
     #[inline(always)]
-    pub fn by_radius(self) -> bool {
+    pub const fn by_radius(self) -> bool {
         !matches!(
             self,
             Friction::None
@@ -74,8 +98,8 @@ impl Friction {
     }
 
     /// Whether k_t may be derived from the material (`NULL`).
-    pub fn takes_material(self) -> bool {
-        self.by_radius() && self != Friction::MindlinClassic
+    pub const fn takes_material(self) -> bool {
+        self.by_radius() && !matches!(self, Friction::MindlinClassic)
     }
 
     #[inline(always)]

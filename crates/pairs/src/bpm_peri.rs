@@ -9,7 +9,7 @@ use perigrain_lang::Args;
 use perigrain_neigh::list::{Pair as Near, Reach, Wanted, difference};
 use perigrain_plan::{About, Needs, Op, Stage, Tick};
 use perigrain_styles::near::room_for_pairs;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax, Words, inner};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::columns::VOLUME_PROPERTY;
 use perigrain_world::field::{BONDS, BOX, COLUMNS, F, KIND, LISTS, MASK, MOLECULE, RADIUS, TAG, TALLY, X};
@@ -28,12 +28,14 @@ impl Style for BpmPeriStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("pair_style bpm/peri\npair_coeff I J k horizon"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Grammar::NONE), Form::headed("pair_coeff I J", Own::GRAMMAR)] },
+            ),
             summary: "Short-range repulsion of particles whose peridynamic bond is broken or never was.",
             text: "F = 15 k V̄ (d − r)/δ pushes particles apart while r < d = 1.35 lattice spacings (`lattice`), V̄ being the mean of \
                    both volumes `d_vfrac`, δ the horizon, and the energy ½ F (d − r). With `bond_style bpm/peri force newton` it is \
                    15 k V_i V_j (d − r)/δ. Joined particles are left out: `special_bonds lj 0 1 1 coul 1 1 1`. Every pair of types \
-                   needs coefficients of its own; k is usually the micro-modulus 18K/(πδ⁴). Whose bond breaks at less than 1.35 spacings pushes at once: the energy \
+                   needs coefficients of its own. Whose bond breaks at less than 1.35 spacings pushes at once: the energy \
                    of the contact comes with the break, as the law has it. As LAMMPS' development version 2Sep2026 states it.",
             example: "units si\natom_style bond\nlattice sc 5.0e-4\nregion b block -0.004 0.004 -0.002 0.002 -0.002 0.002 units box\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 2\ncreate_atoms 1 single 0.0 0.0 0.0 units box\n\
@@ -51,6 +53,17 @@ impl PairStyle for BpmPeriStyle {
     }
 }
 
+/// The words of `pair_coeff`.
+#[derive(Words)]
+struct Own {
+    /// The contact stiffness k, usually the micro-modulus 18K/(πδ⁴) [energy/length⁷].
+    #[word(non_negative)]
+    k: f64,
+    /// The horizon δ [length].
+    #[word(what = "the horizon", positive)]
+    horizon: f64,
+}
+
 /// Stiffness and horizon by pair of types.
 #[derive(Clone, Default)]
 struct Contact {
@@ -62,9 +75,9 @@ impl Pair for Contact {
         Facts { name: "bpm/peri", ..Facts::default() }
     }
 
-    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let contact = [args.non_negative("the contact stiffness k")?, args.positive("the horizon")?];
-        self.table.extend(pairs.iter().map(|p| (*p, contact)));
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let Own { k, horizon } = inner(args, cx)?;
+        self.table.extend(pairs.iter().map(|p| (*p, [k, horizon])));
         Ok(())
     }
 

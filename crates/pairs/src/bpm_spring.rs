@@ -5,7 +5,7 @@ use super::{Mix, Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_lang::Args;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax, Words, inner};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::{Fields, V};
 
@@ -18,7 +18,9 @@ impl Style for BpmSpringStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("pair_style bpm/spring\npair_coeff I J k rc gamma"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Grammar::NONE), Form::headed("pair_coeff I J", Own::GRAMMAR)] },
+            ),
             summary: "Damped repulsion within a distance, for particles of bonded solids.",
             text: "F = k (rc − r) − γ (1 − (r/rc)⁸) r̂·v pushes particles apart while r < rc, with the energy k (rc − r)²/2. Bonded particles \
                    are left out, or count in part, as `special_bonds` says. Two types without a line of their own take the geometric means of k and γ, and a cutoff \
@@ -34,6 +36,20 @@ impl PairStyle for BpmSpringStyle {
     }
 }
 
+/// The words of `pair_coeff`.
+#[derive(Words)]
+struct Own {
+    /// The stiffness k [force/length].
+    #[word(non_negative)]
+    k: f64,
+    /// The cutoff rc [length].
+    #[word(positive)]
+    rc: f64,
+    /// The damping gamma [force/velocity].
+    #[word(non_negative)]
+    gamma: f64,
+}
+
 /// F = k (rc − r) − γ (1 − (r/rc)⁸) r̂·v.
 struct Spring;
 
@@ -43,10 +59,9 @@ impl Law for Spring {
     const READS: Fields = V;
     const SINGLE: bool = false;
 
-    fn read(args: &mut Args, _global: f64) -> Result<Coeff> {
-        let k = args.non_negative("the stiffness k")?;
-        let cutoff = args.positive("the cutoff rc")?;
-        Ok(Coeff { cutoff, own: [k, args.non_negative("the damping gamma")?] })
+    fn read(args: &mut Args, _global: f64, cx: &BuildCx) -> Result<Coeff> {
+        let Own { k, rc, gamma } = inner(args, cx)?;
+        Ok(Coeff { cutoff: rc, own: [k, gamma] })
     }
 
     fn mixed(a: &Coeff, b: &Coeff, rule: Mix) -> Coeff {

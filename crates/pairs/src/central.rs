@@ -43,7 +43,7 @@ pub trait Law: Send + Sync + 'static {
     ///
     /// # Errors
     /// Every mistake in the line.
-    fn read(args: &mut Args, global: f64) -> Result<Coeff>;
+    fn read(args: &mut Args, global: f64, cx: &BuildCx) -> Result<Coeff>;
 
     /// The coefficients between two types.
     fn mixed(a: &Coeff, b: &Coeff, rule: Mix) -> Coeff;
@@ -100,8 +100,8 @@ impl<L: Law> Pair for Declared<L> {
         Facts { name: L::NAME, coefficients: L::NUMBERS, mixes: true, ..Facts::default() }
     }
 
-    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let coeff = L::read(args, self.global)?;
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let coeff = L::read(args, self.global, cx)?;
         self.given.extend(pairs.iter().map(|p| (*p, coeff)));
         Ok(())
     }

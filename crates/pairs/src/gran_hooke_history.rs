@@ -1,9 +1,10 @@
 //! `pair_style gran/hooke/history`: the older granular style, one model for all pairs of types.
 
+use super::contact::classic::Line;
 use super::{Pair, PairStyle, granular};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax, Words};
 use perigrain_styles::{BuildCx, Doc, Style};
 
 /// The style.
@@ -16,20 +17,16 @@ impl Style for GranHookeHistory {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style gran/hooke/history Kn Kt|NULL gamma_n gamma_t|NULL xmu dampflag [limit_damping] \
-                     [arms radius|middle]",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("pair_coeff I J", Grammar::NONE)] },
             ),
             summary: "Contacts of spheres: linear springs along and across the normal, damping, friction.",
             text: "F_n = Kn δ − m̄ gamma_n v_n along the normal for an overlap δ > 0, m̄ = m_i m_j/(m_i + m_j); across \
                    it F_t = −Kt ξ − m̄ gamma_t v_t, at most xmu F_n and nothing where F_n pulls (`compat lammps`: xmu |F_n|). ξ is the slip accumulated while the contact \
-                   lasts, without its part along the normal, and shortened to what slides.\n\n`NULL` stands for Kt = 2/7 \
-                   Kn and gamma_t = gamma_n/2; `dampflag` 0 sets gamma_t to 0, 1 keeps it. Torques act with the full \
-                   radii as arms, as in LAMMPS: both together are longer than the distance of the centres by the overlap δ, so that \
-                   friction turns a pair by F_t δ out of nothing: an oblique impact with overlaps of 10 % of the radius changes the angular momentum \
-                   by 6 %, one 100 times as stiff by 0.6 %. With `arms middle` they end in the middle of the overlap, as those of \
-                   pair_style granular do, and angular momentum is kept to rounding; `arms radius` is the default. \
-                   `limit_damping` keeps the normal force from pulling.\n\n`pair_coeff I J` has no words \
+                   lasts, without its part along the normal, and shortened to what slides.\n\n`arms radius`, LAMMPS' arms of friction, are both together longer than the distance of the \
+                   centres by the overlap δ, so that friction turns a pair by F_t δ out of nothing: an oblique impact with overlaps of \
+                   10 % of the radius changes the angular momentum by 6 %, one 100 times as stiff by 0.6 %. With `arms middle` \
+                   angular momentum is kept to rounding.\n\n`pair_coeff I J` has no words \
                    of its own but must name all types. As a sub-style of hybrid it acts between the types it was named \
                    for. What `fix freeze` holds counts as infinitely heavy.\n\npair_style granular has the same force \
                    with `hooke … damping mass_velocity tangential linear_history_classic` and `hertz … tangential \
@@ -42,9 +39,5 @@ impl Style for GranHookeHistory {
 impl PairStyle for GranHookeHistory {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
         granular::classic(self.name(), false, true, args, cx)
-    }
-
-    fn options(&self) -> &'static [&'static str] {
-        &["limit_damping", "arms"]
     }
 }

@@ -111,7 +111,7 @@ fn build(name: &'static str, overlay: bool, args: &mut Args, cx: &BuildCx) -> Re
 
 /// The error for a word that is no sub-style, nor one of those of the sub-style `before` it.
 fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) -> Diagnostics {
-    let own = before.map_or(&[][..], |style| style.options());
+    let own = before.map_or(vec![], |style| style.options());
     let text = match before {
         Some(style) => format!("`{}` is neither a word of `{}` nor a sub-style", word.text, style.name()),
         None => format!("unknown sub-style: `{}`", word.text),
@@ -126,10 +126,7 @@ fn unknown(word: &Word, before: Option<&dyn PairStyle>, known: &[&'static str]) 
     if let Some(n) = nearest(&word.text, known.iter().copied()) {
         return d.help(format!("did you mean `{n}`?")).into();
     }
-    let d = match own {
-        [] => d,
-        _ => d.help(format!("may stand here: {}", own.join(" "))),
-    };
+    let d = if own.is_empty() { d } else { d.help(format!("may stand here: {}", own.join(" "))) };
     d.help(format!("sub-styles: {}", known.join(" "))).into()
 }
 

@@ -5,7 +5,7 @@ use super::{Mix, Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, inner};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::field::Fields;
 use std::f64::consts::PI;
@@ -19,23 +19,47 @@ impl Style for SoftStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("pair_style soft CUTOFF\npair_coeff I J A [CUTOFF]"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("pair_coeff I J", Own::GRAMMAR)] },
+            ),
             summary: "A soft push that takes points apart which lie in each other.",
-            text: "E = A (1 + cos(π r/rc)) for r < rc, and F = A (π/rc) sin(π r/rc) apart: at most 2 A however near two points are, so that what was \
-                   placed at random can be taken apart before a harder law acts. As in LAMMPS, A of two types without a line of their own is the \
-                   geometric mean; their cutoff is mixed as `pair_modify mix geometric|arithmetic|sixthpower` says. A is an energy, CUTOFF a \
-                   distance; without one the style's own holds. `fix adapt … pair soft a I J v_name` raises A during a run, with `ramp()` in the variable. \
-                   Beside it `fix nve/limit` limits how far particles go in a step; `minimize` works as well. Weights of \
-                   `special_bonds` between 0 and 1 count in part. Points at one place feel no force: `displace_atoms … random` parts them.",
+            text: "E = A (1 + cos(π r/rc)) for r < rc, and F = A (π/rc) sin(π r/rc) apart: at most 2 A however near two points \
+                   are, so that what was placed at random can be taken apart before a harder law acts. Points at one place feel \
+                   no force: `displace_atoms … random` parts them.\n\n\
+                   As in LAMMPS, A of two types without a line of their own is the geometric mean; their cutoff is mixed as \
+                   `pair_modify mix geometric|arithmetic|sixthpower` says. A is an energy, CUTOFF a distance; without one the \
+                   style's own holds. Weights of `special_bonds` between 0 and 1 count in part.\n\n\
+                   `fix adapt … pair soft a I J v_name` raises A during a run, with `ramp()` in the variable. Beside it `fix \
+                   nve/limit` limits how far particles go in a step; `minimize` works as well.",
             example: "pair_style soft 0.002\npair_coeff * * 1e-6\nvariable push equal ramp(0,1e-5)\nfix harder all adapt 1 pair soft a * * v_push",
         }
     }
 }
 
 impl PairStyle for SoftStyle {
-    fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        Ok(Box::new(Declared::<Soft>::new(args.positive("the cutoff")?)))
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        let Line { cutoff } = inner(args, cx)?;
+        Ok(Box::new(Declared::<Soft>::new(cutoff)))
     }
+}
+
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    /// The cutoff rc [length].
+    #[word(name = "CUTOFF", what = "the cutoff", positive)]
+    cutoff: f64,
+}
+
+/// The words of `pair_coeff`.
+#[derive(Words)]
+struct Own {
+    /// The energy A [energy].
+    #[word(name = "A", non_negative)]
+    energy: f64,
+    /// The cutoff, if it is not that of the style [length].
+    #[word(name = "CUTOFF", positive)]
+    cutoff: Option<f64>,
 }
 
 /// E = A (1 + cos(π r/rc)).
@@ -47,10 +71,9 @@ impl Law for Soft {
     const READS: Fields = Fields::NONE;
     const SINGLE: bool = true;
 
-    fn read(args: &mut Args, global: f64) -> Result<Coeff> {
-        let a = args.non_negative("the energy A")?;
-        let cutoff = if args.is_empty() { global } else { args.positive("the cutoff")? };
-        Ok(Coeff { cutoff, own: [a, 0.0] })
+    fn read(args: &mut Args, global: f64, cx: &BuildCx) -> Result<Coeff> {
+        let Own { energy, cutoff } = inner(args, cx)?;
+        Ok(Coeff { cutoff: cutoff.unwrap_or(global), own: [energy, 0.0] })
     }
 
     /// A is mixed geometrically by every rule.

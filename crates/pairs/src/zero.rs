@@ -4,7 +4,7 @@ use super::{ByPart, Deck, Facts, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, inner};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -18,32 +18,44 @@ impl Style for ZeroStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("pair_style zero CUTOFF [nocoeff] [full]\npair_coeff I J [CUTOFF]"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("pair_coeff I J", Own::GRAMMAR)] },
+            ),
             summary: "No forces between particles.",
             text: "Says that pairs are meant to exert no forces, as in scenes of bonds alone. LAMMPS builds neighbour lists up to \
-                   the cutoff; here they are not needed. With `nocoeff` pair_coeff accepts any words.",
+                   the cutoff; here they are not needed.",
             example: "pair_style zero 0.002\npair_coeff * *",
         }
     }
 }
 
 impl PairStyle for ZeroStyle {
-    fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        let cutoff = args.positive("the cutoff")?;
-        let mut any = false;
-        loop {
-            if args.eat("nocoeff") {
-                any = true;
-            } else if !args.eat("full") {
-                break;
-            }
-        }
-        Ok(Box::new(Zero { any, cutoff, pairs: BTreeMap::new() }))
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+        let Line { cutoff, nocoeff, .. } = inner(args, cx)?;
+        Ok(Box::new(Zero { any: nocoeff, cutoff, pairs: BTreeMap::new() }))
     }
+}
 
-    fn options(&self) -> &'static [&'static str] {
-        &["nocoeff", "full"]
-    }
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    /// The cutoff [length].
+    #[word(name = "CUTOFF", positive)]
+    cutoff: f64,
+    /// `pair_coeff` accepts any words.
+    #[word(flag)]
+    nocoeff: bool,
+    /// LAMMPS' word for lists that have each pair twice; without effect here.
+    #[word(flag = "full")]
+    _full: bool,
+}
+
+/// The words of `pair_coeff`.
+#[derive(Words)]
+struct Own {
+    /// The cutoff, of these types alone [length].
+    #[word(name = "CUTOFF", positive)]
+    cutoff: Option<f64>,
 }
 
 #[derive(Clone)]
@@ -61,12 +73,12 @@ impl Pair for Zero {
         Facts { name: "zero", ..Facts::default() }
     }
 
-    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
         let mut cutoff = self.cutoff;
         if self.any {
             args.rest();
-        } else if !args.is_empty() {
-            cutoff = args.positive("the cutoff")?;
+        } else {
+            cutoff = inner::<Own>(args, cx)?.cutoff.unwrap_or(cutoff);
         }
         self.pairs.extend(pairs.iter().map(|p| (*p, cutoff)));
         Ok(())

@@ -57,11 +57,6 @@ impl Form {
     pub const NAMES: [(&'static str, Form); 3] =
         [("bulk", Form::Bulk), ("shear", Form::Shear), ("young", Form::Young)];
 
-    /// The form of this name.
-    pub fn from_name(name: &str) -> Option<Form> {
-        Self::NAMES.iter().find(|(n, _)| *n == name).map(|(_, f)| *f)
-    }
-
     /// Micro-modulus c (force per volume squared; N/m⁶ in SI) of a bond with horizon δ:
     /// bulk 18K/(πδ⁴), shear 30G/(πδ⁴), young 12E/(πδ⁴).
     pub fn micro_modulus(self, solid: Elastic, horizon: f64) -> f64 {
@@ -133,11 +128,6 @@ impl Mix {
     /// The words of a deck with their meaning.
     pub const NAMES: [(&'static str, Mix); 3] =
         [("arithmetic", Mix::Arithmetic), ("harmonic", Mix::Harmonic), ("geometric", Mix::Geometric)];
-
-    /// The rule of this name.
-    pub fn from_name(name: &str) -> Option<Mix> {
-        Self::NAMES.iter().find(|(n, _)| *n == name).map(|(_, m)| *m)
-    }
 
     /// The mean of two values that are not negative; of two equal values, that value to the last bit.
     pub fn mean(self, a: f64, b: f64) -> f64 {
@@ -271,12 +261,5 @@ mod tests {
         }
         let [a, h, g] = [Mix::Arithmetic, Mix::Harmonic, Mix::Geometric].map(|m| m.mean(2.0, 8.0));
         assert_eq!([a, h, g], [5.0, 3.2, 4.0]);
-    }
-
-    #[test]
-    fn names_are_found() {
-        assert_eq!(Form::from_name("shear"), Some(Form::Shear));
-        assert_eq!(Form::from_name("Shear"), None);
-        assert_eq!(Mix::from_name("harmonic"), Some(Mix::Harmonic));
     }
 }

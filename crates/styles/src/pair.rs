@@ -22,9 +22,9 @@ pub trait PairStyle: Style {
     /// Every mistake in the line.
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>>;
 
-    /// The words that may end its line, for messages.
-    fn options(&self) -> &'static [&'static str] {
-        &[]
+    /// The keywords of its line, for messages.
+    fn options(&self) -> Vec<&'static str> {
+        self.doc().syntax.behind().keywords()
     }
 }
 

@@ -15,7 +15,7 @@
 //! | `keyword`, `keyword = "type"` | a keyword (by its own name) with values; may stand in any order behind the others |
 //! | `flag` | a keyword without values: whether it stands there |
 //! | `default = 1.0` | the value of a keyword that is not there; without it `Default::default()` |
-//! | `shown = "none"` | what the manual shows as that default |
+//! | `shown = "none"` | what the manual shows as that default; `"required"` where the keyword must stand there |
 //! | `list` | the values of a keyword are all words up to the next keyword |
 //! | `least = 1` | how many of a list must be there |
 //! | `positive`, `non_negative`, `from = 1` | bounds of numbers |

@@ -55,11 +55,17 @@ const TEXT: &str = "**Operators**, from loose to tight: `||` and `|^` (exclusive
     v is `c_ID`, `f_ID`, a column `c_ID[i]` or `f_ID[i]` of a global array, or `v_NAME` of a vector-style variable. Operators \
     and functions of numbers act on each element; two vectors must have the same length. `[1,3,7]` is a vector.\n\n\
     **Masks**, one value per particle: `gmask(group)` `rmask(region)` `grmask(group,region)` are 1 inside, else 0.\n\n\
-    **Files and the session**: `next(NAME)` is the present value of a file- or atomfile-style variable, which then moves on; \
-    `is_file(path)` `is_os(pattern)` (a regular expression, as `is_os(^Linux)`) `is_timeout()` (whether `timer timeout` has \
-    passed) `is_defined(category,name)` (compute dump fix group region variable) `is_available(category,name)` (atom integrate \
-    minimize pair bond angle dihedral improper kspace fix compute region dump command, pair_style for pair as LAMMPS' manual has \
-    it, feature: gzip png exceptions; 0 for a name that is not there, where LAMMPS 22Jul2025 ends) `is_active(category,name)` \
-    (package newton pair comm_style min_style run_style atom_style pair_style bond_style …; packages never are) yield 1 or 0; `extract_setting(name)` knows LAMMPS' settings such as `dimension box_exist ntypes nlocal \
-    nthreads`. `label2type` and `is_typelabel` are refused: there are no label maps. `charge(g)` is refused: no atom style here \
-    has charges.";
+    **Files and the session**: `next(NAME)` is the present value of a file- or atomfile-style variable, which then moves \
+    to its next value. `extract_setting(name)` knows LAMMPS' settings such as `dimension box_exist ntypes nlocal \
+    nthreads`. These yield 1 or 0:\n\n\
+    - `is_file(path)`;\n\
+    - `is_os(pattern)`, a regular expression, as `is_os(^Linux)`;\n\
+    - `is_timeout()`, whether `timer timeout` has passed;\n\
+    - `is_defined(category,name)`: compute dump fix group region variable;\n\
+    - `is_available(category,name)`: atom integrate minimize pair bond angle dihedral improper kspace fix compute region \
+    dump command, pair_style for pair as LAMMPS' manual has it, feature: gzip png exceptions; 0 for a name that is not \
+    there, where LAMMPS 22Jul2025 ends;\n\
+    - `is_active(category,name)`: package newton pair comm_style min_style run_style atom_style pair_style bond_style …; \
+    packages never are.\n\n\
+    `label2type` and `is_typelabel` are refused: there are no label maps. `charge(g)` is refused: no atom style here has \
+    charges.";

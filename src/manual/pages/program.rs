@@ -45,24 +45,34 @@ pub(super) const PERIGRAIN: Entry = (
     },
 );
 
-const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off. `check` reads it, changes and writes \
-    nothing, and reports every problem of one or more decks at once, with `--json` as JSON. `fmt` lays decks out anew: one blank between words, columns and comments below each other where \
-    they were, continuations four blanks in, no blanks at the ends of lines and one empty line at most; words, quoted texts, `$(…)` and line endings \
-    stay as they are, and a deck that cannot be read is refused. `--check` writes nothing and fails where a deck would change, `--diff` shows \
-    the lines; `fmt -` reads standard input and writes to standard output. `lsp` answers an editor while decks are \
-    written: see [In your editor](../editor/README.md). `plan` prints what each step of \
-    the deck's runs will do, in which order, and what was left out and why: each plan once, with the lines whose runs have it and how often. \
-    It makes the particles that the first run begins with, so that large scenes take their time, and no step; behind that run nothing is known of \
-    particles, and lines that depend on them are listed at the end. Exit code 1 means that the deck is refused. With `--measure` it runs the deck and adds time and bytes of each part, with `--measure -ranks N` also which rows of particles each \
-    part needs in a quiet step and what ranks send for it, with `--dot` it \
-    prints the command graph for graphviz. `sweep` makes many runs of a deck side by side: see [sweep](sweep.md). `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md). `doc` prints a page of this manual, `explain` the story behind the code of a \
-    message. `verify` runs published cases that the program carries and says whether this build on this machine gives \
-    their numbers: see [verify](verify.md). `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md). `new` writes a small deck that runs as it stands and says in its lines what to change; \
-    `examples` lists the larger ones that the program carries, shows what they are about, or copies one into a folder of its own; neither \
-    writes over anything. `doc` (or `help`) also shows the how-tos (`perigrain help notch`); of a word that has no page it lists pages and how-tos that speak of it; on a terminal pages are wrapped at words and \
-    go through `$PAGER` (`less`). `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes pages for `man`. \
-    `repl`, and `perigrain` alone on a terminal, work lines off as they are typed: see [the \
-    prompt](prompt.md).\n\n\
+const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) runs a deck. The other forms:\n\n\
+    - `check` reads a deck, changes and writes nothing, and reports every problem of one or more decks at once, with \
+    `--json` as JSON.\n\
+    - `fmt` lays decks out anew: one blank between words, columns and comments below each other where they were, \
+    continuations four blanks in, no blanks at the ends of lines and one empty line at most; words, quoted texts, `$(…)` and \
+    line endings stay as they are, and a deck that cannot be read is refused. `--check` writes nothing and fails where a \
+    deck would change, `--diff` shows the lines; `fmt -` reads standard input and writes to standard output.\n\
+    - `lsp` answers an editor while decks are written: see [In your editor](../editor/README.md).\n\
+    - `plan` prints what each step of the deck's runs will do, in which order, and what was left out and why: each plan \
+    once, with the lines whose runs have it and how often. It makes the particles that the first run begins with, so that \
+    large scenes take their time, and no step; behind that run nothing is known of particles, and lines that depend on them \
+    are listed at the end. Exit code 1 means that the deck is refused.\n\
+    - `plan --measure` runs the deck and adds time and bytes of each part, with `-ranks N` also which rows of particles each \
+    part needs in a quiet step and what ranks send for it; `plan --dot` prints the command graph for graphviz.\n\
+    - `sweep` makes many runs of a deck side by side: see [sweep](sweep.md).\n\
+    - `bench` weighs wall time against error over time steps, spacings and other knobs: see [bench](bench.md).\n\
+    - `repl`, and `perigrain` alone on a terminal, execute lines as they are typed: see [the prompt](prompt.md).\n\
+    - `verify` runs published cases that the program carries and says whether this build on this machine gives their \
+    numbers: see [verify](verify.md).\n\
+    - `report` writes a web page about a run that is over, from its log and dumps: see [Look at a run](../howto/report.md).\n\
+    - `new` writes a small deck that runs as it stands and says in its lines what to change; `examples` lists the larger \
+    ones that the program carries, shows what they are about, or copies one into a folder of its own. Neither overwrites a \
+    file.\n\
+    - `doc` (or `help`) prints a page of this manual, or a how-to (`perigrain help notch`); of a word that has no page it \
+    lists pages and how-tos that speak of it; on a terminal pages are wrapped at words and go through `$PAGER` (`less`).\n\
+    - `explain` prints the story behind the code of a message.\n\
+    - `completions` prints what a shell needs to complete these lines (`source <(perigrain completions bash)`), `man` writes \
+    pages for `man`.\n\n\
     Switches, before or behind the deck, with one dash or two:\n\n\
     - `-in FILE`, `-i`: the deck; without a deck or with `none` it is read from standard input;\n\
     - `-log FILE|none`, `-l`: the log file (`log.lammps`);\n\
@@ -88,14 +98,20 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) works a deck off.
     - `-help`, `-h`: prints switches and subcommands and ends; `-version`, `--version`, `-V`: prints version, commit (in release builds), target \
     and the vector instructions that kernels use here, and ends.\n\n\
     LAMMPS' other switches are refused by name.\n\n\
-    Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is \
-    wrong, 130 ended by Ctrl-C or a signal. The first Ctrl-C (and SIGTERM, as queues send it, or SIGHUP of a closed terminal, unless \
-    `nohup` has it ignored, or SIGXCPU behind `ulimit -t`) ends a run at a whole step with all files complete and a last file of `restart`, and any other \
-    line that takes long within half a second, as not done; a second one (a second later, if it is no Ctrl-C) ends the program at once. With `-partition` it reaches all of them. A file that outgrows `ulimit -f` is an error, as on a full disk.\n\n\
-    On a terminal few words are said: a line for each command that makes something, how much memory the particles are about to take, the step table as far as whole columns fit, and \
-    behind a run three lines: time and speed; where results are; what would make it faster. LAMMPS' blocks stand in the log, in pipes and with `-screen full`. A live line shows \
-    how many steps of all the deck's runs are made (of the present run where only a run determines it), speed and time left as estimated from the runs so far, step, time and thermo \
-    columns; there is none where standard error is no terminal, or `TERM` is `dumb`. Messages have colours unless `NO_COLOR` is set.";
+    Exit codes: 0 all well (or the status of `quit`), 1 the deck was refused or its run failed, 2 the command line is wrong, \
+    130 ended by Ctrl-C or a signal.\n\n\
+    The first Ctrl-C ends a run at a whole step with all files complete and a last file of `restart`, and any other line \
+    that takes long within half a second, as not done. So do SIGTERM, as queues send it, SIGHUP of a closed terminal, unless \
+    `nohup` has it ignored, and SIGXCPU behind `ulimit -t`. A second one (a second later, if it is no Ctrl-C) ends the \
+    program at once. With `-partition` it reaches all of them. A file that outgrows `ulimit -f` is an error, as on a full \
+    disk.\n\n\
+    On a terminal the output is short: a line for each command that makes something, how much memory the particles are about \
+    to take, the step table as far as whole columns fit, and behind a run three lines: time and speed; where results are; \
+    what would make it faster. LAMMPS' blocks stand in the log, in pipes and with `-screen full`. Messages have colours \
+    unless `NO_COLOR` is set.\n\n\
+    A live line shows how many steps of all the deck's runs are made (of the present run where only a run determines it), \
+    speed and time left as estimated from the runs so far, step, time and thermo columns; there is none where standard error \
+    is no terminal, or `TERM` is `dumb`.";
 
 #[cfg(test)]
 mod tests {

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 pub const DMT: Style = Style {
     name: "dmt",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON, Number::GAMMA],
-    formula: "4/3 E* a δ − 4π γ R̄",
+    formula: "F_n = 4/3 E* a δ − 4π γ R̄.",
     pulls: |_| true,
     restitution: false,
     force: |pair| {

@@ -49,21 +49,8 @@ pub const EEPA: Style = Style {
         Number { name: "the exponent n", ..EXPONENT },
         Number { word: "chi", name: "the exponent chi", ..EXPONENT },
     ],
-    formula: "plastic and adhesive, below",
-    text: "`eepa` is the Edinburgh elasto-plastic adhesion model (Morrissey 2013; Thakur et al. 2014, doi \
-           10.1007/s10035-014-0506-4) for cohesive powders whose strength depends on what they have borne. Loading follows \
-           F_n = −f0 + k_1 δⁿ with k_1 = 4/3 E* R̄^(2−n); unloading and reloading −f0 + k_2 (δⁿ − δ_pⁿ) with \
-           k_2 = k_1/(1 − lambda_p), where δ_p, δ_pⁿ = lambda_p δ_maxⁿ, is the plastic overlap that stays; pulled further, the \
-           contact comes apart along −f0 − k_adh δ^chi, and is gone at δ = 0. k_adh is such that the largest pull beyond `f0` \
-           [force] is (3/2) π gamma a_p with a_p = √(R̄ δ_p): it grows with the load, but not beyond the pull at δ = δ_p/2 of \
-           the unloading branch. A contact that is loaded again halfway down the adhesive branch goes up with k_2 from there, with a \
-           smaller δ_max. `n` and `chi` are at least 1 (1.5, 1.5: Hertz'; 1, 1: linear), `lambda_p` at least 0 (elastic) and \
-           below 1. Friction, and what rolls and twists, is limited by mu |F_n + f0 + k_adh δ^chi| with F_n before damping \
-           (Thakur et al., eq. 13). `tsuji` and `coeff_restitution` take k = k_1 δ^(n−1) and mean the e of such grains without \
-           plasticity and adhesion; what these take comes on top. The slope of k_2 decides on time steps. What \
-           plasticity and adhesion take is the residual of compute energy/ledger. With gamma the surface \
-           energy of the interface, both surfaces together. Some authors take the circle in which the spheres cut each other, \
-           a_p = √(2 R̄ δ_p): gamma is then larger by √2 here. Types are mixed only with the same n and chi. Not in LAMMPS 22Jul2025.",
+    formula: "Plastic and adhesive grains, below.",
+    text: include_str!("eepa.md"),
     exponent: |numbers| numbers[6],
     pulls: |numbers| numbers[4] > 0.0 || numbers[5] > 0.0,
     force: |pair| {

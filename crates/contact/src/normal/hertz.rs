@@ -6,7 +6,7 @@ use super::{Geometry, NormalLaw, Number, Push, Real, Role, Style};
 pub const HERTZ: Style = Style {
     name: "hertz",
     numbers: &[Number::own("kn", "the stiffness kn", Role::Own), Number::ETA],
-    formula: "kn a δ",
+    formula: "F_n = kn a δ.",
     force: |pair| Hertz { stiffness: pair.numbers[0] }.into(),
     ..Style::PUSHES
 };
@@ -15,7 +15,7 @@ pub const HERTZ: Style = Style {
 pub const HERTZ_MATERIAL: Style = Style {
     name: "hertz/material",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON],
-    formula: "4/3 E* a δ with 1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j",
+    formula: "F_n = 4/3 E* a δ with 1/E* = (1−ν_i²)/E_i + (1−ν_j²)/E_j.",
     force: |pair| Hertz { stiffness: 4.0 / 3.0 * pair.young }.into(),
     ..Style::PUSHES
 };

@@ -6,7 +6,7 @@ use super::{Geometry, NormalLaw, Number, Push, Real, Role, Style};
 pub const HOOKE: Style = Style {
     name: "hooke",
     numbers: &[Number::own("kn", "the stiffness kn", Role::Own), Number::ETA],
-    formula: "F_n = kn δ",
+    formula: "F_n = kn δ.",
     exponent: |_| 1.0,
     force: |pair| Hooke { stiffness: pair.numbers[0] }.into(),
     ..Style::PUSHES

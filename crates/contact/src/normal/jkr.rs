@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 pub const JKR: Style = Style {
     name: "jkr",
     numbers: &[Number::YOUNG, Number::ETA, Number::POISSON, Number::GAMMA],
-    formula: "4/3 E* a³/R̄ − 4 a √(π γ E* a) with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it \
-              is torn off at −3π γ R̄, beyond touch",
+    formula: "F_n = 4/3 E* a³/R̄ − 4 a √(π γ E* a) with δ = a²/R̄ − 2 √(π γ a/E*): a contact that has been made lasts until it \
+              is torn off at −3π γ R̄, beyond touch.",
     pulls: |_| true,
     restitution: false,
     force: |pair| Jkr { stiffness: 4.0 / 3.0 * pair.young, cohesion: pair.numbers[3] }.into(),

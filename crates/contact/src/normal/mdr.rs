@@ -32,22 +32,8 @@ pub const MDR: Style = Style {
         },
         Number::own("e", "the damping coefficient", Role::Eta),
     ],
-    formula: "plastic grains, below",
-    text: "`mdr` (Zunker & Kamrin 2024, doi 10.1016/j.jmps.2023.105492 and .105493; 2025, doi 10.31224/4289) is for powders \
-           under pressure: grains that yield, flow and grow. Each grain is pressed by a rigid plane through the circle \
-           in which the spheres cut each other; the force is the mean of both sides. Elastic, it is Hertz' with \
-           E_c = E/(1−ν²). Where Hertz' mean pressure reaches the hardness p_Y = Y (1.75 exp(−4.4 δ/R) + 1) the grain \
-           yields, and from then on F = p_Y π a², a² = 2δR − δ² + δ_Y² − δ_Y R, while the contact gets deeper. Unloading is \
-           that of a plane on springs under an ellipse of height 2 p_Y a/E_c; with `gamma` the surfaces stick as \
-           those of Johnson, Kendall & Roberts, but no contact reaches beyond δ = 0. What flow displaces raises the \
-           whole free surface: the radius of a grain grows (its mass stays). Where the free part of its surface falls below \
-           `psi_b` (0 … 1; 0: never) the grain grows no more, and the mean approach of all its planes \
-           squeezes it with the bulk modulus E/(3 (1−2ν)). A contact that reaches through a third grain pushes less. All \
-           grains have the same numbers; walls too, but for `gamma`, and LAMMPS wants those of fix wall/gran/region. \
-           `damping none` or `damping mdr` goes with it: η = e √(m̄ k) with k = 2 E_c (a_i + a_j), on walls E_c a/2 (`1`), or η = e \
-           (`2`). Friction takes a = √(R̄ δ) as everywhere. Decks can read `d_Ro` (first radius), `d_Velas`, \
-           `d_Acon1` (area of contact), `d_psi`, `d_eps_bar`, `d_sigmaxx` `…yy` `…zz` (mean stress, also `…xy` `…xz` `…yz`) and others of LAMMPS' \
-           names by compute property/atom, dump or formula. Heat, `average` and `curvature` do not go with it. Large overlaps are what it is made for.",
+    formula: "Plastic grains, below.",
+    text: include_str!("mdr.md"),
     in_grains: true,
     force: |pair| Mdr { elastic: Hertz { stiffness: 4.0 / 3.0 * pair.young } }.into(),
     ..Style::PUSHES

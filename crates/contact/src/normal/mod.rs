@@ -18,7 +18,7 @@ use crate::tests::new_law;
 
 pub use mdr::{grain as plastic_grain, material as plastic};
 pub use style::{
-    Bound, Mixed, Normal, Number, Numbers, Role, Style, effective_shear, effective_young, geometric,
+    Bound, MOST, Mixed, Normal, Number, Numbers, Role, Style, effective_shear, effective_young, geometric,
 };
 
 use super::{Geometry, Real};

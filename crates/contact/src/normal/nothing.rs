@@ -3,7 +3,7 @@
 use super::{Geometry, NormalLaw, Push, Real, Style};
 
 /// The style.
-pub const NONE: Style = Style { name: "none", formula: "no force", ..Style::PUSHES };
+pub const NONE: Style = Style { name: "none", formula: "No force.", ..Style::PUSHES };
 
 /// No force.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,14 +13,9 @@ use perigrain_world::Compat;
 /// Force styles of walls.
 const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"];
 
-/// The numbers of a classic force.
+/// The words of a classic force.
 const CLASSIC: &[Part] = &[
-    number("Kn"),
-    number("Kt"),
-    number("gamma_n"),
-    number("gamma_t"),
-    number("xmu"),
-    Part::Word(Placeholder { name: "dampflag", kind: Kind::Whole, about: "", unit: "" }),
+    Part::All(classic::Numbers::GRAMMAR),
     Part::Maybe(&[Part::Word(Placeholder {
         name: "limit_damping",
         kind: Kind::Choice(&[Alternative { word: "limit_damping", about: "", parts: &[] }]),
@@ -28,10 +23,6 @@ const CLASSIC: &[Part] = &[
         unit: "",
     })]),
 ];
-
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
-}
 
 const fn style(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
     Alternative { word, about, parts }
@@ -148,7 +139,7 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
     let word = args.expect("the force style")?;
     let span = word.span;
     let classic = |hertz: bool, history: bool, args: &mut Args| {
-        let numbers = classic::numbers(args, hertz, cx.world.settings.units)?;
+        let numbers = classic::numbers(args, hertz, cx)?;
         let mut model = Model::classic(hertz, history, &numbers);
         let [gamma_n, gamma_t] = numbers.gamma;
         if gamma_n > 0.0 {
@@ -158,7 +149,7 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
         Ok::<_, Diagnostics>(model)
     };
     let model = match word.text.as_str() {
-        "granular" => granular(args, ends)?,
+        "granular" => granular(args, cx, ends)?,
         "hooke" => classic(false, false, args)?,
         "hooke/history" => classic(false, true, args)?,
         "hertz/history" => classic(true, true, args)?,
@@ -195,8 +186,8 @@ fn unknown_force(word: &Word, ends: &[&str]) -> Diagnostic {
     }
 }
 
-fn granular(args: &mut Args, ends: &[&str]) -> Result<Model> {
-    let c = words::coeff(args, ends)?;
+fn granular(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Model> {
+    let c = words::coeff(args, cx, ends)?;
     let wrong = if c.average != Average::None {
         "`average` is for contacts of particles with each other"
     } else if c.curvature != Curvature::Both {

@@ -14,7 +14,7 @@ use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Swing};
 use perigrain_styles::matter::Masses;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, KIND, MASS, OMEGA, QUAT, RADIUS, TYPE_MASS};
 use perigrain_world::{Bond, World};
@@ -30,30 +30,11 @@ impl Style for BpmBeam {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/beam [shear paper|timoshenko [K]|none] [criterion sum|separate] [overlay/pair yes|no] [break yes|no] [smooth yes|no] [store/local ID N value …]\n\
-                     bond_coeff T E nu radius R|ratio L [strength S1 S2 [moment B] [weibull M SEED]] [damping Z|ZN ZS ZT ZB]",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(words::Style::GRAMMAR), Form::headed("bond_coeff T", words::Own::GRAMMAR)] },
             ),
             summary: "Cylindrical beams between spheres whose forces and torques derive from an energy.",
-            text: with_store!(
-                "Each bond is a cylinder between two centres, of Young's modulus E, Poisson's ratio nu and the radius R, or L times the radius of \
-                   its smaller end. With A = π R², I = π R⁴/4, G = E/(2 (1 + nu)) and its length r0 when a run first met it, it resists stretch with \
-                   E A/r0, shear with G A/r0, twist with 2 G I/r0 and bending with E I/r0. `shear timoshenko` takes 1/k = r0/(K G A) + r0³/(12 E I) \
-                   (K = 0.9), with which a chain of bonds is a Timoshenko beam at its nodes however few they are; `shear none` leaves shear out.\n\
-                   All of it comes from one energy of positions and orientations: energy, momentum and angular momentum are kept, and a body as it was \
-                   made has exactly no force. `compute energy/ledger` counts the energy of each bond that breaks, and what dashpots take up.\n\
-                   A bond breaks where N/A + B M_b R/I reaches the strength S1 [pressure], or Q/A + B M_t R/(2 I) reaches S2, with the tension N, the \
-                   shear force Q, the moments M_b of bending and M_t of twist; `moment` B is between 0 and 1 (1). `criterion separate` tests each of the \
-                   four alone, N and M_b only where the bond is pulled. `weibull M SEED` multiplies both strengths of every bond with a number of a Weibull \
-                   distribution of modulus M and mean 1, which belongs to the IDs of its ends. A broken bond is gone, and pair forces act between its ends \
-                   from the next step on; nothing breaks without `strength`, nor under `compat lammps` in the setup of a run. `smooth yes` multiplies forces with 1 − B⁴, \
-                   B the share of the strength that is used up; energy is not kept then.\n\
-                   `damping`: dashpots of Z times the critical damping of the two ends on the bond, of all modes or of stretch, shear, twist and bending.\n\
-                   Needs `atom_style bpm/sphere` and `fix nve/bpm/sphere`; bonds that break need `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair \
-                   yes` `special_bonds lj/coul 1 1 1`. `compute bond/local` gives for each bond `tension`, `shear` [force], `bend`, \
-                   `twist` [force length] and `load`, the share of its strength that is used up. This style is perigrain's own. `kinematics incremental` and `yield` are refused.\n\
-                   Jarolin and Dosta, Comput. Part. Mech. 8 (2021); Potyondy and Cundall, Int. J. Rock Mech. Min. Sci. 41, 1329 (2004)."
-            ),
+            text: with_store!("bpm_beam/page.md"),
             example: "units si\natom_style bpm/sphere\nlattice sc 0.001\nregion b block 0 3 0 3 0 3\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 0.001 density 2000\n\
                       create_bonds many all all 1 0.0009 0.0011\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/beam\n\
@@ -66,7 +47,7 @@ impl Style for BpmBeam {
 impl BondStyle for BpmBeam {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
         needs_orientations(self.name(), cx)?;
-        let (options, law) = words::style(args)?;
+        let (options, law) = read::<words::Style>(args, cx)?.options()?;
         Ok(Box::new(Declared { options, law, types: BTreeMap::new() }))
     }
 }
@@ -142,8 +123,8 @@ impl BondForce for Declared {
         "bpm/beam"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let line = Line::read(args)?;
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let line = read::<words::Own>(args, cx)?.line(args.name_span())?;
         self.types.extend(kinds.iter().map(|&k| (k, line)));
         Ok(())
     }

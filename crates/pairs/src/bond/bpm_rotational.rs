@@ -1,7 +1,7 @@
 //! bond bpm/rotational: bonds that stretch, shear, twist, bend and break.
 
 use super::driver::{Bonded, Driven, ends_of, pull_of};
-use super::options::Options;
+use super::options::{Options, Springs};
 use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched, needs_orientations};
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -13,7 +13,7 @@ use perigrain_bonded::stiffness::Stiffness;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Swing};
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Alternative, At, Form, NonNegative, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::field::{Fields, OMEGA, QUAT};
 use perigrain_world::{Bond, World};
@@ -28,30 +28,11 @@ impl Style for BpmRotational {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/rotational [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
-                     bond_coeff T kr ks kt kb frc fsc ttc tbc gn gs gr gt",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("bond_coeff T", Own::GRAMMAR)] },
             ),
             summary: "Bonds between spheres that stretch, shear, twist, bend and break.",
-            text: with_store!(
-                "A run notes length and direction of each bond when it first meets it. Against them stand the stretch r − r0, the shear angle γ \
-                   between the direction then, as the end with the higher ID carries it along, and now, the twist ψ about the bond and the bending \
-                   angle θ: kr (r − r0) along the bond, ks r γ across it, the torques kt ψ and kb θ. With `normalize yes` kr and ks are divided by r0. \
-                   B = F/frc + |Fs|/fsc + |Tt|/ttc + |Tb|/tbc counts how near a bond is to its end (pressure counts as negative, B not below 0): at \
-                   B ≥ 1 it exerts no force any more and is gone, and pair forces act between its ends from the next step on. So it is too in the \
-                   setup of a run, where LAMMPS (and `compat lammps`) lets nothing break: bonds beyond their limit there pull with 1 − B⁴ below zero. Forces and torques are multiplied with 1 − B⁴ unless `smooth no` is given; `break no` needs that, and frc … tbc are any numbers then. Dashpots gn along \
-                   the bond, gs across it, gr against rolling (times r) and gt against twist. Needs `atom_style bpm/sphere`, `fix nve/bpm/sphere`, and \
-                   `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` `special_bonds lj/coul 1 1 1`. The energy is counted as 0: the law \
-                   has none. Forces come from no energy, so that without \
-                   dashpots bodies that swing freely gain some until they fly apart (twelve spheres in steps of a tenth \
-                   of the limit after 6·10⁴ steps, in LAMMPS too): say gn … gt in long runs. Restart files hold length and direction at rest. For `compute bond/local`: `b1` is r0, `b2 b3 b4` the direction at rest towards the end \
-                   that is listed first, `b5 b6 b7` the force on it; `force` there is what acts along the bond (LAMMPS, and `compat lammps`, multiply it with r, and the direction with r0). `frame particle` and `damping dem` of newer LAMMPS say what this is; \
-                   `frame average` and `damping derivative` are refused.\n\
-                   LAMMPS takes the first direction for one of particles that have not turned, and lets a bond whose end with the lower ID stands \
-                   exactly below the other neither bend nor twist; so does `compat lammps`. Its limits of torque stand in this order, twist first, \
-                   though its manual has them the other way round.\n\
-                   Wang, Acta Geotechnica 4, 117 (2009); Clemmer, Monti and Lechman, Soft Matter 20, 1702 (2024)."
-            ),
+            text: with_store!("bpm_rotational.md"),
             example: "units lj\natom_style bpm/sphere\nlattice sc 1.0\nregion b block 0 3 0 3 0 3\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nset group all diameter 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/rotational\n\
@@ -61,24 +42,93 @@ impl Style for BpmRotational {
     }
 }
 
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    springs: Springs,
+    /// What newer LAMMPS calls the frame of this style.
+    #[word(keyword = "frame", with = frame, kind = Kind::Choice(PARTICLE))]
+    _frame: Option<Here>,
+    /// What newer LAMMPS calls the dashpots of this style.
+    #[word(keyword = "damping", with = damping, kind = Kind::Choice(DEM))]
+    _damping: Option<Here>,
+}
+
+/// A word of newer LAMMPS for the behaviour of this style.
+struct Here;
+
+const PARTICLE: &[Alternative] = &[Alternative { word: "particle", about: "", parts: &[] }];
+const DEM: &[Alternative] = &[Alternative { word: "dem", about: "", parts: &[] }];
+
+/// The words of `bond_coeff`.
+#[derive(Words)]
+struct Own {
+    /// Stiffnesses against stretch and shear [force/length].
+    #[word(name = "kr ks", what = "the stiffness {}")]
+    springs: [NonNegative; 2],
+    /// Stiffnesses against twist and bending [torque].
+    #[word(name = "kt kb", what = "the stiffness {}")]
+    turning: [NonNegative; 2],
+    /// Forces along and across the bond at which it breaks [force].
+    #[word(name = "frc fsc", what = "the force {} at which it breaks")]
+    forces: [At<f64>; 2],
+    /// Torques of twist and bending at which it breaks [torque].
+    #[word(name = "ttc tbc", what = "the torque {} at which it breaks")]
+    torques: [At<f64>; 2],
+    /// Dashpots along and across the bond [force/velocity].
+    #[word(name = "gn gs", what = "the damping {}")]
+    dashpots: [NonNegative; 2],
+    /// Dashpots against rolling and twist [torque time].
+    #[word(name = "gr gt", what = "the damping {}")]
+    rolling: [NonNegative; 2],
+}
+
+impl Own {
+    fn coeffs(self, options: &Options) -> Result<Coeffs> {
+        let four = |[normal, shear]: [NonNegative; 2], [twist, bend]: [NonNegative; 2]| Stiffness {
+            normal: normal.0,
+            shear: shear.0,
+            twist: twist.0,
+            bend: bend.0,
+        };
+        let [normal, shear] = self.forces;
+        let [twist, bend] = self.torques;
+        let strength = Stiffness {
+            normal: options.limit(normal, "the force frc at which it breaks")?,
+            shear: options.limit(shear, "the force fsc at which it breaks")?,
+            twist: options.limit(twist, "the torque ttc at which it breaks")?,
+            bend: options.limit(bend, "the torque tbc at which it breaks")?,
+        };
+        // Roll comes before twist here.
+        let [roll, twist] = self.rolling;
+        let damping = four(self.dashpots, [twist, roll]);
+        Ok(Coeffs { stiffness: four(self.springs, self.turning), strength, damping })
+    }
+}
+
 impl BondStyle for BpmRotational {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
         needs_orientations(self.name(), cx)?;
-        let options = Options::read(args, true, same_as_here)?;
+        let options = read::<Line>(args, cx)?.springs.options()?;
         Ok(Box::new(Declared { options, types: BTreeMap::new(), compat_lammps: cx.world.settings.lammps() }))
     }
 }
 
-/// The words of newer LAMMPS for the behaviour of this style.
-fn same_as_here(word: &str, args: &mut Args) -> Result<bool> {
-    let (here, elsewhere) = match word {
-        "frame" => ("particle", "average"),
-        "damping" => ("dem", "derivative"),
-        _ => return Ok(false),
-    };
+/// The value of `frame` for which this style's behaviour stands.
+fn frame(args: &mut Args, _: &BuildCx) -> Result<Here> {
+    same_as_here(args, "frame", ["particle", "average"])
+}
+
+/// The value of `damping` for which this style's behaviour stands.
+fn damping(args: &mut Args, _: &BuildCx) -> Result<Here> {
+    same_as_here(args, "damping", ["dem", "derivative"])
+}
+
+fn same_as_here(args: &mut Args, word: &str, [here, elsewhere]: [&'static str; 2]) -> Result<Here> {
     let given = args.expect(here)?;
     if given.text == here {
-        return Ok(true);
+        return Ok(Here);
     }
     if given.text != elsewhere {
         return Err(args.unknown(given, &[here]));
@@ -126,28 +176,13 @@ impl Driven<0> for Declared {
     }
 }
 
-/// Four numbers that are taken in turns, as stretch, shear, twist, bending.
-fn four(names: [&str; 4], mut next: impl FnMut(&str) -> Result<f64>) -> Result<Stiffness> {
-    let [normal, shear, twist, bend] = names;
-    Ok(Stiffness { normal: next(normal)?, shear: next(shear)?, twist: next(twist)?, bend: next(bend)? })
-}
-
 impl BondForce for Declared {
     fn name(&self) -> &'static str {
         "bpm/rotational"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let names = ["the stiffness kr of stretch", "ks of shear", "kt of twist", "kb of bending"];
-        let stiffness = four(names, |what| args.non_negative(what))?;
-        let names =
-            ["the force frc at which it breaks", "fsc in shear", "the torque ttc of twist", "tbc of bending"];
-        let strength = four(names, |what| self.options.limit(args, what))?;
-        let names = ["the damping gn of stretch", "gs of shear", "gr of roll", "gt of twist"];
-        let given = four(names, |what| args.non_negative(what))?;
-        // Roll comes before twist here.
-        let damping = Stiffness { twist: given.bend, bend: given.twist, ..given };
-        let coeffs = Coeffs { stiffness, strength, damping };
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let coeffs = read::<Own>(args, cx)?.coeffs(&self.options)?;
         self.types.extend(kinds.iter().map(|&k| (k, coeffs)));
         Ok(())
     }

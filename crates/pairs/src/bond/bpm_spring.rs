@@ -1,7 +1,7 @@
 //! bond bpm/spring: damped springs that break, at rest as they are when a run first meets them.
 
 use super::driver::{Bonded, Driven, pull_of};
-use super::options::Options;
+use super::options::{Options, Springs};
 use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::Result;
@@ -12,7 +12,7 @@ use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Loaded, Standing, Stiffness, Swing};
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{At, Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::{Bond, World};
 use std::collections::BTreeMap;
@@ -26,20 +26,9 @@ impl Style for BpmSpring {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/spring [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [volume/factor yes|no] [store/local ID N value …]\nbond_coeff T k ec gamma [av]",
-            ),
+            syntax: Syntax::Forms(FORMS),
             summary: "Damped springs that break at a strain.",
-            text: with_store!(
-                "F = w (k (r − r0) + γ r̂·v) pulls the ends together, with the distance r0 at which a run first met the bond and w = 1 − ((r − r0)/(r0 ec))⁸ \
-                   unless `smooth no` is given. With `normalize yes` the spring's force is k (r − r0)/r0. At a strain beyond ±ec a bond breaks: it is gone \
-                   from the next step on, and pair forces act between its ends then; also in the setup of a run, where LAMMPS (and `compat lammps`) lets it push its ends \
-                   apart with w below zero. `break no` lets no bond break and needs `smooth no`. \
-                   The energy is k (r − r0)²/2, with `normalize yes` k (r − r0)²/(2 r0). Pair forces between bonded particles are off, `special_bonds lj 0 1 1 coul 1 1 1`, or with `overlay/pair yes` on, \
-                   `special_bonds lj/coul 1 1 1`. Restart files hold r0, data files do not; `b1` of compute bond/local is r0. `volume/factor yes` pushes the ends apart by a further av ((ΣV/ΣV0)^(1/3) − r/r0), with V the sum of r³ of the bonds of a particle, V0 \
-                   that of r0³, both of the two ends (in flat scenes r² and the square root): it sets Poisson's ratio. \
-                   Clemmer and Robbins, Phys. Rev. Lett. 129, 078002 (2022)."
-            ),
+            text: with_store!("bpm_spring.md"),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/spring\n\
@@ -48,17 +37,60 @@ impl Style for BpmSpring {
     }
 }
 
+const FORMS: &[Form] = &[
+    Form::behind(Line::GRAMMAR),
+    Form::headed("bond_coeff T", Spring::GRAMMAR),
+    Form { about: "Under `volume/factor yes`.", ..Form::headed("bond_coeff T", Swelling::GRAMMAR) },
+];
+
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    springs: Springs,
+    /// Whether forces feel the volume about the ends, which sets Poisson's ratio.
+    #[word(keyword = "volume/factor")]
+    volume: bool,
+}
+
+/// The words of `bond_coeff` for springs that break at a strain.
+#[derive(Words)]
+pub struct Spring {
+    /// The stiffness k [force/length].
+    #[word(non_negative)]
+    k: f64,
+    /// The breaking strain.
+    #[word(name = "ec")]
+    limit: At<f64>,
+    /// The damping gamma [force/velocity].
+    #[word(non_negative)]
+    gamma: f64,
+}
+
+/// The words of `bond_coeff` with the volume.
+#[derive(Words)]
+struct Swelling {
+    #[word(flatten)]
+    spring: Spring,
+    /// The stiffness av of the volume [force].
+    #[word(name = "av")]
+    volume: f64,
+}
+
+impl Spring {
+    /// Stiffness, breaking strain and damping.
+    ///
+    /// # Errors
+    /// A breaking strain that is none.
+    pub fn numbers(self, options: &Options) -> Result<[f64; 3]> {
+        Ok([self.k, options.limit(self.limit, "the breaking strain")?, self.gamma])
+    }
+}
+
 impl BondStyle for BpmSpring {
-    fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let mut volume = false;
-        let options = Options::read(args, true, |word, args| {
-            let mine = word == "volume/factor";
-            if mine {
-                volume = args.flag(word)?;
-            }
-            Ok(mine)
-        })?;
-        Ok(Box::new(Declared { options, volume, springs: BTreeMap::new() }))
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        let Line { springs, volume } = read(args, cx)?;
+        Ok(Box::new(Declared { options: springs.options()?, volume, springs: BTreeMap::new() }))
     }
 }
 
@@ -80,11 +112,14 @@ impl BondForce for Declared {
         "bpm/spring"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let k = args.non_negative("the stiffness k")?;
-        let spring =
-            [k, self.options.limit(args, "the breaking strain")?, args.non_negative("the damping gamma")?];
-        let volume = if self.volume { args.number("the stiffness av of the volume")? } else { 0.0 };
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let (spring, volume) = if self.volume {
+            let Swelling { spring, volume } = read(args, cx)?;
+            (spring, volume)
+        } else {
+            (read(args, cx)?, 0.0)
+        };
+        let spring = spring.numbers(&self.options)?;
         self.springs.extend(kinds.iter().map(|&k| (k, (spring, volume))));
         Ok(())
     }

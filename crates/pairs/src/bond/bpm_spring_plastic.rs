@@ -1,7 +1,8 @@
 //! bond bpm/spring/plastic: such springs that yield.
 
+use super::bpm_spring::Spring;
 use super::driver::{Bonded, Driven, pull_of};
-use super::options::Options;
+use super::options::{Options, Springs};
 use super::store_local::Store;
 use super::{BondForce, BondStyle, Pull, Stretched};
 use perigrain_base::diag::{Code, Result, fail};
@@ -12,7 +13,7 @@ use perigrain_bonded::sweep::Body;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::{Standing, Stiffness, Swing};
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Fix, SealCx, Style};
 use perigrain_world::bonds::ascending;
 use perigrain_world::{Bond, World};
@@ -27,18 +28,11 @@ impl Style for BpmSpringPlastic {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/spring/plastic [overlay/pair yes|no] [smooth yes|no] [normalize yes|no] [break yes|no] [store/local ID N value …]\n\
-                     bond_coeff T k ec gamma ep",
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Springs::GRAMMAR), Form::headed("bond_coeff T", Line::GRAMMAR)] },
             ),
             summary: "Damped springs that yield at one strain and break at another.",
-            text: with_store!(
-                "F = w (k (r − req) + γ r̂·v) as `bond_style bpm/spring` has it, with a length at rest req that begins as the distance r0 at which a run first \
-                   met the bond, and follows where |r − req| would exceed ep r0: a bond that is pulled on and on grows with a constant force. It breaks at a strain \
-                   (r − r0)/r0 beyond ±ec, and w = 1 − ((r − r0)/(r0 ec))⁸ unless `smooth no` is given. `normalize yes` divides k by r0. The energy is counted as 0. \
-                   `b1 b2` of compute bond/local are r0 and req; restart files hold both. All else as for bpm/spring. \
-                   (LAMMPS' page says ep req; its program does what is said here.) Clemmer and Lechman, Powder Technology (2025)."
-            ),
+            text: with_store!("bpm_spring_plastic.md"),
             example: "units lj\natom_style bond\nlattice sc 1.0\nregion b block 0 4 0 4 0 4\n\
                       create_box 1 b bond/types 1 extra/bond/per/atom 6\ncreate_atoms 1 box\nmass 1 1.0\n\
                       create_bonds many all all 1 0.9 1.1\nspecial_bonds lj 0 1 1 coul 1 1 1\nbond_style bpm/spring/plastic\n\
@@ -47,9 +41,29 @@ impl Style for BpmSpringPlastic {
     }
 }
 
+/// The words of `bond_coeff`.
+#[derive(Words)]
+struct Line {
+    #[word(flatten)]
+    spring: Spring,
+    /// The strain ep at which it yields, from 0 to 1.
+    #[word(name = "ep", with = share, kind = Kind::Number)]
+    limit: f64,
+}
+
+/// A strain at which bonds yield.
+fn share(args: &mut Args, _: &BuildCx) -> Result<f64> {
+    let span = args.here();
+    let limit = args.non_negative("the strain ep at which it yields")?;
+    if limit > 1.0 {
+        return fail(Code::BAD_VALUE, span, "a bond yields at a strain between 0 and 1");
+    }
+    Ok(limit)
+}
+
 impl BondStyle for BpmSpringPlastic {
-    fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        let options = Options::read(args, true, |_, _| Ok(false))?;
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        let options = read::<Springs>(args, cx)?.options()?;
         Ok(Box::new(Declared { options, springs: BTreeMap::new() }))
     }
 }
@@ -66,15 +80,9 @@ impl BondForce for Declared {
         "bpm/spring/plastic"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let k = args.non_negative("the stiffness k")?;
-        let spring =
-            [k, self.options.limit(args, "the breaking strain")?, args.non_negative("the damping gamma")?];
-        let span = args.here();
-        let limit = args.non_negative("the strain ep at which it yields")?;
-        if limit > 1.0 {
-            return fail(Code::BAD_VALUE, span, "a bond yields at a strain between 0 and 1");
-        }
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let Line { spring, limit } = read(args, cx)?;
+        let spring = spring.numbers(&self.options)?;
         self.springs.extend(kinds.iter().map(|&k| (k, (spring, limit))));
         Ok(())
     }

@@ -8,7 +8,7 @@ use perigrain_bonded::spring::Harmonic;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
 use perigrain_styles::bond::Stiffness;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{Fields, MEMO};
@@ -24,9 +24,11 @@ impl Style for HarmonicStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("bond_style harmonic\nbond_coeff T K r0"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Grammar::NONE), Form::headed("bond_coeff T", Line::GRAMMAR)] },
+            ),
             summary: "Springs along bonds.",
-            text: "E = K (r − r0)²: the usual ½ is in K [energy/length²], r0 is a length. The force at length r is 2 K (r − r0).",
+            text: "E = K (r − r0)²: the usual ½ is in K. The force at length r is 2 K (r − r0).",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2.1 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style harmonic\nbond_coeff 1 50.0 1.0\nfix 1 all nve\n\
@@ -39,6 +41,17 @@ impl BondStyle for HarmonicStyle {
     fn build(&self, _args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
         Ok(Box::<Declared>::default())
     }
+}
+
+/// The words of `bond_coeff`.
+#[derive(Words)]
+struct Line {
+    /// The stiffness K [energy/length²].
+    #[word(name = "K")]
+    stiffness: f64,
+    /// The length r0 at rest [length].
+    #[word(name = "r0", what = "the length r0")]
+    rest: f64,
 }
 
 /// Stiffness and length at rest by type.
@@ -110,9 +123,9 @@ impl BondForce for Declared {
         "harmonic"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        let spring = [args.number("the stiffness K")?, args.number("the length r0")?];
-        self.springs.extend(kinds.iter().map(|&k| (k, Spring::new(k, spring))));
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let Line { stiffness, rest } = read(args, cx)?;
+        self.springs.extend(kinds.iter().map(|&k| (k, Spring::new(k, [stiffness, rest]))));
         Ok(())
     }
 

@@ -2,13 +2,8 @@
 
 /// What the pages of bond styles add about `store/local`, after their own text.
 macro_rules! with_store {
-    ($text:literal) => {
-        concat!(
-            $text,
-            "\n\n`store/local ID N value …` keeps values of each bond that breaks: `id1 id2` the IDs of its ends, the lower first, `time` the step, \
-             `x y z` the middle between them then, `x/ref y/ref z/ref` in the setup of the first run. At every multiple of N those of the last N steps \
-             become the local values of a fix of this ID (of bonds that break in one step in the order of their IDs), for `dump local`."
-        )
+    ($file:literal) => {
+        concat!(include_str!($file), "\n", include_str!("store_local.md"))
     };
 }
 

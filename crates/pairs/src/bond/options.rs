@@ -2,10 +2,37 @@
 
 use super::breaking_weights;
 use super::store_local::Store;
-use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_lang::Args;
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_styles::Fix;
+use perigrain_styles::words::{At, Words};
 use perigrain_world::World;
+
+/// Words of all these styles.
+#[derive(Words)]
+pub struct Breaking {
+    /// Whether pair forces act between bonded particles, too.
+    #[word(keyword = "overlay/pair")]
+    overlay: bool,
+    /// Whether bonds break.
+    #[word(keyword = "break", what = "break", placed, shown = "yes")]
+    breaks: Option<At<bool>>,
+    /// Keeps values of each bond that breaks.
+    #[word(keyword = "store/local", name = "ID")]
+    store: Option<Store>,
+}
+
+/// Words of styles with stiffnesses in the units of springs.
+#[derive(Words)]
+pub struct Springs {
+    #[word(flatten)]
+    breaking: Breaking,
+    /// Whether forces fade towards breaking.
+    #[word(keyword, default = true)]
+    smooth: bool,
+    /// Whether stiffnesses are divided by the length at rest.
+    #[word(keyword)]
+    normalize: bool,
+}
 
 /// The options of a style's line.
 #[derive(Clone)]
@@ -22,47 +49,42 @@ pub struct Options {
     pub store: Option<Store>,
 }
 
-/// The words that all these styles know.
-pub const WORDS: [&str; 5] = ["overlay/pair", "smooth", "normalize", "break", "store/local"];
-
-impl Options {
-    /// Reads the line; `smooth` is the default of that option, `more` reads the words of a single style and returns whether there
-    /// was one.
+impl Springs {
+    /// The options.
     ///
     /// # Errors
-    /// Every mistake in the line.
-    pub fn read(
-        args: &mut Args,
-        smooth: bool,
-        mut more: impl FnMut(&str, &mut Args) -> Result<bool>,
-    ) -> Result<Self> {
-        let mut options = Self { overlay: false, smooth, normalize: false, breaks: true, store: None };
-        let mut last = args.here();
-        while let Some(word) = args.next() {
-            last = word.span;
-            match word.text.as_str() {
-                "overlay/pair" => options.overlay = args.flag("overlay/pair")?,
-                "smooth" => options.smooth = args.flag("smooth")?,
-                "normalize" => options.normalize = args.flag("normalize")?,
-                "store/local" => options.store = Some(Store::read(args)?),
-                "break" => options.breaks = args.flag("break")?,
-                other if more(other, args)? => {}
-                _ => return Err(args.unknown(word, &WORDS)),
-            }
-        }
-        if options.smooth && !options.breaks {
-            let d = Diagnostic::error(Code::CONFLICT, last, "`break no` does not go with smoothed forces");
-            return Err(d.help("add `smooth no`").into());
-        }
-        Ok(options)
+    /// `break no` with smoothed forces.
+    pub fn options(self) -> Result<Options> {
+        Ok(Options { normalize: self.normalize, ..self.breaking.options(self.smooth)? })
     }
+}
 
+impl Breaking {
+    /// The options.
+    ///
+    /// # Errors
+    /// `break no` with smoothed forces.
+    pub fn options(self, smooth: bool) -> Result<Options> {
+        let Self { overlay, breaks, store } = self;
+        if let Some(at) = breaks.filter(|at| smooth && !at.value) {
+            let text = "`break no` does not go with smoothed forces";
+            return Err(Diagnostic::error(Code::CONFLICT, at.span, text).help("add `smooth no`").into());
+        }
+        Ok(Options { overlay, smooth, normalize: false, breaks: breaks.is_none_or(|at| at.value), store })
+    }
+}
+
+impl Options {
     /// What a bond bears before it breaks, a strain, force or torque: with `break no` any number, -1 too, as in LAMMPS.
     ///
     /// # Errors
     /// What is no such number.
-    pub fn limit(&self, args: &mut Args, what: &str) -> Result<f64> {
-        if self.breaks { args.positive(what) } else { args.number(what) }
+    pub fn limit(&self, number: At<f64>, what: &str) -> Result<f64> {
+        if self.breaks && !number.unknown && (number.value <= 0.0 || number.value.is_nan()) {
+            let text = format!("{what} must be greater than zero, not {}", number.value);
+            return fail(Code::BAD_VALUE, number.span, text);
+        }
+        Ok(number.value)
     }
 
     /// The fix that `store/local` requests.

@@ -1,10 +1,10 @@
 //! `store/local`: what is kept of bonds that break, as local values of a fix that the bond style brings along.
 
 use perigrain_base::diag::{Code, Result, fail};
-use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::{Fix, SealCx, Shape};
+use perigrain_styles::words::{Args, Kind, Value, Words, inner};
+use perigrain_styles::{BuildCx, Fix, SealCx, Shape};
 use perigrain_world::field::{COLUMNS, Fields, MEMO, SLOTS, X};
 use perigrain_world::{Key, Numbers, Registration, Slot, Under, Vectors, World};
 
@@ -14,59 +14,71 @@ pub const NAME: &str = "store/local";
 /// Columns of places in the setup of the first run.
 static FIRST: Registration = Registration::moved("store/local/", "/first", Under::Anchor);
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Value {
-    /// The ID of an end, the lower first.
-    Id(usize),
-    /// The step in which it broke.
-    Time,
-    /// The middle between its ends then [length].
-    Middle(usize),
-    /// The middle between its ends in the setup of the first run [length].
-    First(usize),
+/// The words behind `store/local`.
+#[derive(Words)]
+struct Line {
+    /// The ID under which broken bonds are kept.
+    #[word(name = "ID")]
+    id: String,
+    /// The interval N.
+    #[word(name = "N", from = 1)]
+    every: i64,
+    values: Vec<Kept>,
 }
 
-const VALUES: [(&str, Value); 9] = [
-    ("id1", Value::Id(0)),
-    ("id2", Value::Id(1)),
-    ("time", Value::Time),
-    ("x", Value::Middle(0)),
-    ("y", Value::Middle(1)),
-    ("z", Value::Middle(2)),
-    ("x/ref", Value::First(0)),
-    ("y/ref", Value::First(1)),
-    ("z/ref", Value::First(2)),
-];
+/// A value of a bond that breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Words)]
+#[word(what = "value of a bond that breaks")]
+enum Kept {
+    /// The ID of an end, the lower of both.
+    Id1,
+    /// The ID of the other end.
+    Id2,
+    /// The step in which it broke.
+    Time,
+    /// The middle between its ends then.
+    X,
+    /// The middle between its ends then.
+    Y,
+    /// The middle between its ends then.
+    Z,
+    /// The middle between its ends in the setup of the first run.
+    #[word("x/ref")]
+    RefX,
+    /// The middle between its ends in the setup of the first run.
+    #[word("y/ref")]
+    RefY,
+    /// The middle between its ends in the setup of the first run.
+    #[word("z/ref")]
+    RefZ,
+}
+
+impl Kept {
+    /// Whether it is of the setup of the first run.
+    fn is_first(self) -> bool {
+        matches!(self, Self::RefX | Self::RefY | Self::RefZ)
+    }
+}
 
 /// The words of a bond style's line about bonds that break.
 #[derive(Clone)]
 pub struct Store {
     id: String,
     every: i64,
-    values: Vec<Value>,
+    values: Vec<Kept>,
     /// Rows since the last multiple of `every`.
     rows: Numbers,
     /// Positions in the setup of the first run.
     first: Vectors,
 }
 
-impl Store {
-    /// Reads `ID N value …`.
-    ///
-    /// # Errors
-    /// Every mistake in it.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        let id = args.expect("the ID under which broken bonds are kept")?.text.clone();
-        let every = args.integer_from(1, "the interval N")?;
-        let mut values = vec![];
-        while let Some(value) =
-            args.peek().and_then(|w| VALUES.iter().find(|(name, _)| *name == w.text)).map(|(_, v)| *v)
-        {
-            args.next();
-            values.push(value);
-        }
+impl Value for Store {
+    const KIND: Kind = Kind::Words(<Line as Words>::GRAMMAR);
+
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let Line { id, every, values } = inner(args, cx)?;
         if values.is_empty() {
-            let known: Vec<&str> = VALUES.iter().map(|(name, _)| *name).collect();
+            let known: Vec<&str> = Kept::KIND.choices().iter().map(|value| value.word).collect();
             let text =
                 format!("`store/local` needs the values to keep of bonds that break: {}", known.join(" "));
             return fail(Code::INCOMPLETE, args.here(), text);
@@ -75,14 +87,16 @@ impl Store {
         let (rows, first) = (Key::new(&own), FIRST.key(&own));
         Ok(Self { id, every, values, rows, first })
     }
+}
 
+impl Store {
     /// The ID.
     pub fn id(&self) -> &str {
         &self.id
     }
 
     fn looks_back(&self) -> bool {
-        self.values.iter().any(|v| matches!(v, Value::First(_)))
+        self.values.iter().any(|value| value.is_first())
     }
 
     /// What `keep` reads; it writes the memory of fixes.
@@ -100,11 +114,16 @@ impl Store {
         };
         let mut rows = vec![];
         for &ends in broken {
-            rows.extend(self.values.iter().map(|v| match *v {
-                Value::Id(k) => f64::from(p.tag[ends[k]]),
-                Value::Time => step as f64,
-                Value::Middle(k) => middle(&p.x, ends, k),
-                Value::First(k) => middle(first, ends, k),
+            rows.extend(self.values.iter().map(|value| match value {
+                Kept::Id1 => f64::from(p.tag[ends[0]]),
+                Kept::Id2 => f64::from(p.tag[ends[1]]),
+                Kept::Time => step as f64,
+                Kept::X => middle(&p.x, ends, 0),
+                Kept::Y => middle(&p.x, ends, 1),
+                Kept::Z => middle(&p.x, ends, 2),
+                Kept::RefX => middle(first, ends, 0),
+                Kept::RefY => middle(first, ends, 1),
+                Kept::RefZ => middle(first, ends, 2),
             }));
         }
         let mut all = w.memo.remove(self.rows).unwrap_or_default();

@@ -5,7 +5,7 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::cformat::general;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, inner, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use std::collections::BTreeMap;
@@ -19,10 +19,11 @@ impl Style for ZeroStyle {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("bond_style zero [nocoeff]\nbond_coeff T [r0]"),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed("bond_coeff T", Own::GRAMMAR)] },
+            ),
             summary: "Bonds without forces: they join particles only in name.",
-            text: "`bond_coeff` may give a length, which goes into data files and means nothing else; with `nocoeff` whatever \
-                   stands there is taken, so that one deck serves for several styles.",
+            text: "With `nocoeff` one deck serves for several styles.",
             example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
                       create_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 1 1\nmass 1 1.0\n\
                       create_bonds single/bond 1 1 2\nbond_style zero\nbond_coeff 1\nfix 1 all nve\nrun 10",
@@ -31,9 +32,26 @@ impl Style for ZeroStyle {
 }
 
 impl BondStyle for ZeroStyle {
-    fn build(&self, args: &mut Args, _cx: &BuildCx) -> Result<Box<dyn BondForce>> {
-        Ok(Box::new(Zero { any: args.eat("nocoeff"), lengths: BTreeMap::new() }))
+    fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
+        let Line { nocoeff } = inner(args, cx)?;
+        Ok(Box::new(Zero { any: nocoeff, lengths: BTreeMap::new() }))
     }
+}
+
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    /// `bond_coeff` takes whatever stands there.
+    #[word(flag)]
+    nocoeff: bool,
+}
+
+/// The words of `bond_coeff`.
+#[derive(Words)]
+struct Own {
+    /// The length r0, which goes into data files and means nothing else [length].
+    #[word(name = "r0")]
+    length: Option<f64>,
 }
 
 #[derive(Clone)]
@@ -48,12 +66,12 @@ impl BondForce for Zero {
         "zero"
     }
 
-    fn coeff(&mut self, kinds: &[u16], args: &mut Args, _cx: &BuildCx) -> Result<()> {
+    fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
         let mut length = 0.0;
         if self.any {
             args.rest();
-        } else if !args.is_empty() {
-            length = args.number("the length r0")?;
+        } else {
+            length = read::<Own>(args, cx)?.length.unwrap_or(0.0);
         }
         self.lengths.extend(kinds.iter().map(|&k| (k, length)));
         Ok(())

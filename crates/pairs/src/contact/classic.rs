@@ -1,54 +1,116 @@
-//! The numbers of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`: seven words for all pairs.
+//! The words of `pair_style gran/*` and `fix wall/gran hooke|hooke/history|hertz/history`: seven numbers for all pairs.
 
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::units::UnitSystem;
 use perigrain_contact::{Arm, Classic};
 use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Alternative, NonNegative, Nullable, Words, inner};
 
 /// The largest coefficient of friction that is taken for one, as in LAMMPS.
 const MOST_FRICTION: f64 = 1e4;
 
-/// Reads what may follow the numbers of a pair style: `arms radius|middle`, and `limit_damping` behind it.
-///
-/// # Errors
-/// Another end of the arms.
-pub fn options(args: &mut Args, numbers: &mut Classic) -> Result<()> {
-    if args.eat("arms") {
-        numbers.arm = match args.choice("end of the arms", &["radius", "middle"])? {
-            "middle" => Arm::Middle,
-            _ => Arm::Radius,
-        };
-    }
-    numbers.limit_damping |= args.eat("limit_damping");
-    Ok(())
+/// The words of a pair style.
+#[derive(Words)]
+pub struct Line {
+    #[word(flatten)]
+    numbers: Numbers,
+    /// Keeps the normal force from pulling.
+    #[word(flag)]
+    limit_damping: bool,
+    #[word(keyword, like = Ends, default = Arm::Radius)]
+    arms: Arm,
 }
 
-/// Reads `Kn Kt gamma_n gamma_t xmu dampflag [limit_damping]`; of `hertz` styles Kn and Kt are pressures in the deck's
-/// units.
-///
-/// # Errors
-/// Missing words, negative numbers, a friction beyond 10⁴, a flag that is neither 0 nor 1.
-pub fn numbers(args: &mut Args, hertz: bool, units: UnitSystem) -> Result<Classic> {
-    let kn = args.non_negative("the stiffness Kn")?;
-    let kt = if args.eat("NULL") { kn * 2.0 / 7.0 } else { args.non_negative("the stiffness Kt (or NULL)")? };
-    let gamma_n = args.non_negative("the damping gamma_n")?;
-    let gamma_t =
-        if args.eat("NULL") { 0.5 * gamma_n } else { args.non_negative("the damping gamma_t (or NULL)")? };
+/// The numbers of a classic force.
+#[derive(Words)]
+pub struct Numbers {
+    /// The stiffness Kn along the normal; of `hertz` styles a pressure [force/length].
+    #[word(name = "Kn", what = "the stiffness Kn", non_negative)]
+    normal: f64,
+    /// The stiffness Kt across the normal; `NULL` stands for 2/7 Kn [force/length].
+    #[word(name = "Kt", what = "the stiffness Kt (or NULL)")]
+    tangential: Nullable<NonNegative>,
+    /// The damping gamma_n along the normal; of `hertz` styles per length [1/time].
+    #[word(what = "the damping gamma_n", non_negative)]
+    gamma_n: f64,
+    /// The damping gamma_t across the normal; `NULL` stands for gamma_n/2 [1/time].
+    #[word(what = "the damping gamma_t (or NULL)")]
+    gamma_t: Nullable<NonNegative>,
+    /// The coefficient of friction xmu.
+    #[word(with = friction, kind = Kind::Number)]
+    xmu: f64,
+    #[word(with = damps, kind = Kind::Choice(FLAGS))]
+    dampflag: bool,
+}
+
+/// The values of `dampflag`.
+const FLAGS: &[Alternative] = &[
+    Alternative { word: "0", about: "No damping across the normal.", parts: &[] },
+    Alternative { word: "1", about: "gamma_t counts.", parts: &[] },
+];
+
+/// Where the arms of friction end.
+#[derive(Words)]
+#[word(what = "end of the arms", of = Arm)]
+enum Ends {
+    /// Torques of friction act with the full radii as arms, as in LAMMPS.
+    Radius,
+    /// They act in the middle of the overlap, as those of pair_style granular.
+    Middle,
+}
+
+/// A coefficient of friction.
+fn friction(args: &mut Args, _: &BuildCx) -> Result<f64> {
     let at = args.here();
     let mu = args.non_negative("the coefficient of friction xmu")?;
     if mu > MOST_FRICTION {
         let text = format!("the coefficient of friction xmu lies between 0 and 10000, {mu} does not");
-        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
+        return fail(Code::BAD_VALUE, at, text);
     }
+    Ok(mu)
+}
+
+/// Whether friction is damped.
+fn damps(args: &mut Args, _: &BuildCx) -> Result<bool> {
     let at = args.here();
-    let flag = args.integer("dampflag")?;
-    if !(0..=1).contains(&flag) {
-        let text = format!("dampflag is 0 (no damping across the normal) or 1, not {flag}");
-        return Err(Diagnostic::error(Code::BAD_VALUE, at, text).into());
+    match args.integer("dampflag")? {
+        0 => Ok(false),
+        1 => Ok(true),
+        flag => fail(
+            Code::BAD_VALUE,
+            at,
+            format!("dampflag is 0 (no damping across the normal) or 1, not {flag}"),
+        ),
     }
-    let limit_damping = args.eat("limit_damping");
-    let gamma = [gamma_n, if flag == 1 { gamma_t } else { 0.0 }];
-    let pressure = if hertz { units.constants().nktv2p } else { 1.0 };
-    let stiffness = [kn, kt].map(|k| k / pressure);
-    Ok(Classic { stiffness, gamma, mu, limit_damping, arm: Arm::Radius })
+}
+
+impl Numbers {
+    /// As the contact model has them; of `hertz` styles Kn and Kt are pressures in the deck's units.
+    fn model(self, hertz: bool, units: UnitSystem) -> Classic {
+        let or = |given: Nullable<NonNegative>, other: f64| given.0.map_or(other, |number| number.0);
+        let pressure = if hertz { units.constants().nktv2p } else { 1.0 };
+        let stiffness = [self.normal, or(self.tangential, self.normal * 2.0 / 7.0)].map(|k| k / pressure);
+        let gamma_t = or(self.gamma_t, 0.5 * self.gamma_n);
+        let gamma = [self.gamma_n, if self.dampflag { gamma_t } else { 0.0 }];
+        Classic { stiffness, gamma, mu: self.xmu, limit_damping: false, arm: Arm::Radius }
+    }
+}
+
+/// Reads the words of a pair style.
+///
+/// # Errors
+/// Missing words, negative numbers, a friction beyond 10⁴, a flag that is neither 0 nor 1.
+pub fn line(args: &mut Args, hertz: bool, cx: &BuildCx) -> Result<Classic> {
+    let Line { numbers, limit_damping, arms } = inner(args, cx)?;
+    Ok(Classic { limit_damping, arm: arms, ..numbers.model(hertz, cx.world.settings.units) })
+}
+
+/// Reads the numbers of a wall, and `limit_damping` behind them.
+///
+/// # Errors
+/// As [`line`].
+pub fn numbers(args: &mut Args, hertz: bool, cx: &BuildCx) -> Result<Classic> {
+    let model = inner::<Numbers>(args, cx)?.model(hertz, cx.world.settings.units);
+    Ok(Classic { limit_damping: args.eat("limit_damping"), ..model })
 }

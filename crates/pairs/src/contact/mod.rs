@@ -2,6 +2,7 @@
 
 pub mod classic;
 pub mod durations;
+mod models;
 pub mod words;
 
 use perigrain_base::diag::Span;

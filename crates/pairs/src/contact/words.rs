@@ -1,78 +1,88 @@
 //! The words of `pair_coeff … granular`: models by name, each with its numbers; unknown models are refused by name.
 
 use super::Coeff;
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
+use super::models::{Dampings, Heating, Law, Rollings, Sliding, Twistings};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_contact::normal::{Bound, Number, STYLES};
-use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting};
+use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Rolling, Twisting};
 use perigrain_lang::{Args, Word};
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Words, read};
 
-/// Keywords after the normal model.
-const KEYWORDS: [&str; 11] = [
-    "tangential",
-    "damping",
-    "limit_damping",
-    "synchronized_verlet",
-    "rolling",
-    "twisting",
-    "heat",
-    "cutoff",
-    "average",
-    "curvature",
-    "arms",
-];
+/// The words of a contact model.
+#[derive(Words)]
+pub struct Line {
+    #[word(name = "NORMAL")]
+    normal: Law,
+    #[word(keyword, name = "MODEL", shown = "required")]
+    tangential: Option<Sliding>,
+    #[word(keyword, name = "MODEL", like = Dampings, default = Damping::default())]
+    damping: Damping,
+    #[word(keyword, name = "MODEL", like = Rollings, default = Rolling::None, shown = "none")]
+    rolling: Rolling,
+    #[word(keyword, name = "MODEL", like = Twistings, default = Twisting::None, shown = "none")]
+    twisting: Twisting,
+    #[word(keyword, name = "MODEL", like = Heating, default = Heat::None, shown = "none")]
+    heat: Heat,
+    /// Cuts the force along the normal off at zero.
+    #[word(flag, placed)]
+    limit_damping: Option<Span>,
+    /// Springs turn with the normal of the middle of the step.
+    #[word(flag, placed)]
+    synchronized_verlet: Option<Span>,
+    /// The cutoff, which sets the reach of the neighbour list by hand [length].
+    #[word(keyword, name = "C", positive)]
+    cutoff: Option<f64>,
+    #[word(keyword, like = Averages, default = Average::None)]
+    average: Average,
+    #[word(keyword, like = Curvatures, default = Curvature::Both)]
+    curvature: Curvature,
+    #[word(keyword, like = Ends, default = Arm::Middle)]
+    arms: Arm,
+}
+
+/// By what the force of each contact is divided.
+#[derive(Words)]
+#[word(what = "way of averaging", of = Average)]
+enum Averages {
+    /// Forces are whole.
+    None,
+    /// The force of each contact is divided by the number of simultaneous ones of the two particles, the larger number; action and
+    /// reaction stay equal.
+    Particle,
+    /// It is divided by that of the two bodies.
+    Body,
+}
+
+/// Whose curvature counts.
+#[derive(Words)]
+#[word(what = "curvature", of = Curvature)]
+enum Curvatures {
+    /// Both radii count.
+    Both,
+    /// R̄ = R of the grain where it meets a peridynamic solid, whose surface counts as flat (Walayat et al., table 1).
+    Impactor,
+}
+
+/// Where the arms of friction end.
+#[derive(Words)]
+#[word(what = "end of the arms", of = Arm)]
+enum Ends {
+    /// Friction takes hold in the middle of the overlap.
+    Middle,
+    /// On a point of a peridynamic solid it takes hold at the point itself.
+    Point,
+}
 
 /// Reads a granular model: to the end of the line, or to one of the words `ends` (what follows the model of a wall).
 ///
 /// # Errors
 /// Every mistake in the line.
-pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
-    let first = args.expect("the normal model")?;
-    let normal = normal(first, args)?;
-    let mut tangential = None;
-    let (mut limit, mut synchronized) = (None, None);
-    let mut c = Coeff {
-        model: Model::new(normal, Damping::default(), Tangential::SMOOTH),
-        average: Average::None,
-        curvature: Curvature::Both,
-        cutoff: None,
-        span: first.span,
-    };
-    while !ends.contains(&args.peek_text())
-        && let Some(word) = args.next()
-    {
-        match word.text.as_str() {
-            "tangential" => tangential = Some(self::tangential(&normal, args)?),
-            "damping" => c.model.damping = damping(args)?,
-            "limit_damping" => limit = Some(word.span),
-            "synchronized_verlet" => synchronized = Some(word.span),
-            "rolling" => c.model.rolling = rolling(args)?,
-            "twisting" => c.model.twisting = twisting(args)?,
-            "heat" => c.model.heat = heat(args)?,
-            "cutoff" => c.cutoff = Some(args.positive("the cutoff")?),
-            "average" => {
-                c.average = match args.choice("way of averaging", &["none", "particle", "body"])? {
-                    "particle" => Average::Particle,
-                    "body" => Average::Body,
-                    _ => Average::None,
-                }
-            }
-            "curvature" => {
-                c.curvature = match args.choice("curvature", &["both", "impactor"])? {
-                    "impactor" => Curvature::Impactor,
-                    _ => Curvature::Both,
-                }
-            }
-            "arms" => {
-                c.model.arm = match args.choice("end of the arms", &["middle", "point"])? {
-                    "point" => Arm::Point,
-                    _ => Arm::Middle,
-                }
-            }
-            _ => return Err(args.unknown(word, &KEYWORDS)),
-        }
-    }
-    let Some(tangential) = tangential else {
+pub fn coeff(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Coeff> {
+    let mut own = args.until(|word| ends.contains(&word));
+    let line: Line = read(&mut own, cx)?;
+    let Law { model: normal, word: first } = line.normal;
+    let Some(sliding) = line.tangential else {
         return Err(Diagnostic::error(
             Code::MISSING_ARGUMENT,
             args.here(),
@@ -81,125 +91,22 @@ pub fn coeff(args: &mut Args, ends: &[&str]) -> Result<Coeff> {
         .help("add `tangential mindlin NULL 1.0 0.5`; `tangential none` makes spheres smooth")
         .into());
     };
-    c.model.tangential = tangential;
-    c.model.limit_damping = limit.is_some();
-    c.model.synchronized = synchronized.is_some();
-    check_synchrony(&c.model, synchronized)?;
-    check_mdr(first, &c)?;
-    check_restitution(first, &c.model)?;
-    check_cohesion(first, &c.model, limit)?;
+    let model = Model {
+        rolling: line.rolling,
+        twisting: line.twisting,
+        heat: line.heat,
+        limit_damping: line.limit_damping.is_some(),
+        arm: line.arms,
+        synchronized: line.synchronized_verlet.is_some(),
+        ..Model::new(normal, line.damping, sliding.tangential(&normal)?)
+    };
+    let Line { average, curvature, cutoff, .. } = line;
+    let c = Coeff { model, average, curvature, cutoff, span: first.span };
+    check_synchrony(&c.model, line.synchronized_verlet)?;
+    check_mdr(&first, &c)?;
+    check_restitution(&first, &c.model)?;
+    check_cohesion(&first, &c.model, line.limit_damping)?;
     Ok(c)
-}
-
-fn normal(word: &Word, args: &mut Args) -> Result<Normal> {
-    let Some(style) = Normal::style(&word.text) else {
-        let names: Vec<&str> = STYLES.iter().map(|style| style.name).collect();
-        return Err(unknown(word, "normal model of granular contacts", &names));
-    };
-    let numbers = style.numbers.iter().map(|number| self::number(number, args));
-    Ok(Normal::new(style, &numbers.collect::<Result<Vec<f64>>>()?))
-}
-
-fn number(number: &Number, args: &mut Args) -> Result<f64> {
-    let (ok, wrong, help) = match number.bound {
-        Bound::Positive => return args.positive(number.name),
-        Bound::NonNegative => return args.non_negative(number.name),
-        Bound::Where { ok, wrong, help } => (ok, wrong, help),
-    };
-    let at = args.here();
-    let a = args.number(number.name)?;
-    if ok(a) {
-        return Ok(a);
-    }
-    let wrong = Diagnostic::error(Code::BAD_VALUE, at, wrong.replace("{}", &a.to_string()));
-    Err(help.into_iter().fold(wrong, |d, help| d.help(help)).into())
-}
-
-fn tangential(normal: &Normal, args: &mut Args) -> Result<Tangential> {
-    let word = args.expect("the tangential model")?;
-    let Some(kind) = Friction::ALL.into_iter().find(|f| f.name() == word.text) else {
-        return Err(unknown(word, "tangential model", &Friction::ALL.map(Friction::name)));
-    };
-    if kind == Friction::None {
-        return Ok(Tangential::SMOOTH);
-    }
-    let stiffness = match kind {
-        Friction::LinearNohistory => Some(0.0),
-        _ if args.peek_text() == "NULL" => {
-            check_null(kind, normal, args.expect("kt")?)?;
-            None
-        }
-        _ => Some(args.non_negative("the tangential stiffness kt")?),
-    };
-    let x_gamma = args.non_negative("the tangential damping x_gamma")?;
-    let mu = args.non_negative("the coefficient of friction mu")?;
-    Ok(Tangential::new(kind, stiffness, x_gamma, mu))
-}
-
-/// `NULL` in the place of a stiffness: only where the normal model has a material and the spring is Mindlin's.
-fn check_null(kind: Friction, normal: &Normal, null: &Word) -> Result<()> {
-    let (text, help) = if !kind.takes_material() {
-        let text = format!("`tangential {}` needs a stiffness kt, not `NULL`", kind.name());
-        (text, "write the stiffness kt; mindlin, mindlin/force and mindlin_rescale take it from the material")
-    } else if normal.material().is_none() {
-        let text = format!("`NULL` needs a material, which {} does not have", normal.name());
-        (text, "write the stiffness kt, or use hertz/material")
-    } else {
-        return Ok(());
-    };
-    Err(Diagnostic::error(Code::CONFLICT, null.span, text).help(help).into())
-}
-
-fn damping(args: &mut Args) -> Result<Damping> {
-    let word = args.expect("the damping model")?;
-    if let Some(d) = Damping::ALL.into_iter().find(|d| d.name() == word.text) {
-        return Ok(d);
-    }
-    if word.text == "mdr" {
-        return Ok(match args.choice("kind of damping mdr", &["1", "2"])? {
-            "1" => Damping::Mdr,
-            _ => Damping::MdrConstant,
-        });
-    }
-    let names = [&Damping::ALL.map(Damping::name)[..], &["mdr"]].concat();
-    Err(unknown(word, "damping model", &names))
-}
-
-fn rolling(args: &mut Args) -> Result<Rolling> {
-    let word = args.expect("the rolling model")?;
-    match word.text.as_str() {
-        "none" => Ok(Rolling::None),
-        "sds" => Ok(Rolling::Sds(sds("rolling", args)?)),
-        _ => Err(unknown(word, "rolling model", &["none", "sds"])),
-    }
-}
-
-fn twisting(args: &mut Args) -> Result<Twisting> {
-    let word = args.expect("the twisting model")?;
-    match word.text.as_str() {
-        "none" => Ok(Twisting::None),
-        "marshall" => Ok(Twisting::Marshall),
-        "sds" => Ok(Twisting::Sds(sds("twisting", args)?)),
-        _ => Err(unknown(word, "twisting model", &["none", "marshall", "sds"])),
-    }
-}
-
-fn sds(part: &str, args: &mut Args) -> Result<Sds> {
-    Ok(Sds {
-        stiffness: args.non_negative(&format!("the {part} stiffness k"))?,
-        damping: args.non_negative(&format!("the {part} damping gamma"))?,
-        mu: args.non_negative(&format!("the {part} friction mu"))?,
-    })
-}
-
-fn heat(args: &mut Args) -> Result<Heat> {
-    let word = args.expect("the heat model")?;
-    match word.text.as_str() {
-        "none" => Ok(Heat::None),
-        "area" => Ok(Heat::Area(args.non_negative("the heat transfer coefficient")?)),
-        "radius" => Ok(Heat::Radius(args.non_negative("the conductivity")?)),
-        _ => Err(unknown(word, "heat model", &["none", "area", "radius"])),
-    }
 }
 
 /// `mdr` goes with its own damping or none, that damping with nothing else.
@@ -261,13 +168,4 @@ fn check_cohesion(normal: &Word, model: &Model, limit: Option<Span>) -> Result<(
         return Err(Diagnostic::error(Code::CONFLICT, span, text).help("leave the word out").into());
     }
     Ok(())
-}
-
-fn unknown(word: &Word, what: &str, known: &[&str]) -> Diagnostics {
-    let d = Diagnostic::error(Code::UNKNOWN_STYLE, word.span, format!("unknown {what}: `{}`", word.text));
-    match perigrain_base::diag::nearest(&word.text, known.iter().copied()) {
-        Some(n) => d.help(format!("did you mean `{n}`?")),
-        None => d.help(format!("known here: {}", known.join(" "))),
-    }
-    .into()
 }

@@ -66,8 +66,7 @@ pub fn classic(
 ) -> Result<Box<dyn Pair>> {
     needs_spheres(name, cx)?;
     let span = args.here();
-    let mut numbers = crate::contact::classic::numbers(args, hertz, cx.world.settings.units)?;
-    crate::contact::classic::options(args, &mut numbers)?;
+    let numbers = crate::contact::classic::line(args, hertz, cx)?;
     let model = Model::classic(hertz, history, &numbers);
     let (average, curvature, cutoff) = (Average::None, Curvature::Both, None);
     let all = Some(Coeff { model, average, curvature, cutoff, span });
@@ -173,10 +172,10 @@ impl Pair for Declared {
         Facts { name: self.name, needs: &["diameter", "density"], elastic_grains, ..Facts::default() }
     }
 
-    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, _cx: &BuildCx) -> Result<()> {
+    fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {
         let coeff = match self.all {
             Some(all) => all,
-            None => words::coeff(args, &[])?,
+            None => words::coeff(args, cx, &[])?,
         };
         self.given.extend(pairs.iter().map(|&p| (p, coeff)));
         Ok(())

@@ -1,12 +1,14 @@
 //! `pair_style peri/eps`: the elastic, perfectly plastic peridynamic solid.
 
+use super::lines::forms;
 use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
+use std::sync::LazyLock;
 
 /// The style.
 pub struct PeriEps;
@@ -18,12 +20,7 @@ impl Style for PeriEps {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style peri/eps\n\
-                     pair_coeff i j K G horizon s00 alpha yield\n\
-                     pair_coeff i j material ID horizon H yield Y [s00 value] [alpha value]\n\
-                     pair_coeff i j mix arithmetic|harmonic|geometric",
-            ),
+            syntax: Syntax::Forms(*FORMS),
             summary: "State-based plasticity: solids that flow at a yield stress (von Mises, no hardening).",
             text: "As `peri/lps`, but each end of a bond has a plastic extension e_p, and t_d = (15Gω/m)(e − θ|ξ|/3 − e_p). \
                 Where the norm √(Σ t_d² w V_j) of a particle exceeds its limit, all its t_d are scaled back to the limit \
@@ -37,6 +34,8 @@ impl Style for PeriEps {
         }
     }
 }
+
+static FORMS: LazyLock<&[Form]> = LazyLock::new(|| forms(law::EPS.style(), Grammar::NONE, false));
 
 impl PairStyle for PeriEps {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {

@@ -1,5 +1,6 @@
 //! Coefficients of peridynamic bonds from materials: `pair_coeff … material ID …` and `pair_coeff … mix RULE`.
 
+use super::lines::keywords;
 use super::numbers::read;
 use super::softening::last_stretch;
 use super::{Coeff, short_range};
@@ -7,9 +8,10 @@ use crate::TypePairs;
 use perigrain_base::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use perigrain_lang::Args;
 use perigrain_peri::families::{Moduli, PmbCoeff};
-use perigrain_peri::law::Style;
 use perigrain_peri::law::style::Curve;
+use perigrain_peri::law::{LawKind, Style};
 use perigrain_peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
+use perigrain_styles::words::{Keyword, Kind, Part, Placeholder, Value, Words, alternatives, inner, one_in};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::material::{Material, Strength};
 use std::collections::BTreeMap;
@@ -89,8 +91,7 @@ impl Materials {
     /// `mix RULE`: means of the properties of exactly two types.
     fn mixed(&self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
         let word = args.peek().map_or(cx.span, |w| w.span);
-        let name = args.choice("rule of mixing", &Mix::NAMES.map(|m| m.0))?;
-        let rule = Mix::from_name(name).unwrap_or_default();
+        let Blend { rule: Rule(rule) } = inner(args, cx)?;
         let [(i, j)] = pairs else {
             return fail(Code::BAD_VALUE, cx.span, "mix concerns two types: name them, without a range");
         };
@@ -199,11 +200,65 @@ impl Stuff {
     }
 }
 
-/// Keywords after a material's ID that a law has besides `horizon`, `s00` and `alpha`; state-based ones must all be said.
-fn keywords(law: &Style) -> impl Iterator<Item = &'static str> + use<> {
-    let form = law.bond_based.then_some("form");
-    form.into_iter().chain(law.numbers.iter().map(|number| number.keyword))
+/// The words behind `mix`.
+#[derive(Words)]
+pub struct Blend {
+    /// The mean of the data of the two types that this pair takes, both of which have a material.
+    #[word(name = "RULE")]
+    rule: Rule,
 }
+
+/// A rule of mixing.
+struct Rule(Mix);
+
+impl Value for Rule {
+    const KIND: Kind = Kind::Choice(&alternatives(&Mix::NAMES));
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        one_in("rule of mixing", args, &Mix::NAMES).map(Self)
+    }
+}
+
+const fn keyword(
+    word: &'static str,
+    values: &'static [Part],
+    about: &'static str,
+    default: &'static str,
+) -> Keyword {
+    Keyword { word, values, about, default, repeats: false }
+}
+
+const fn place(name: &'static str, kind: Kind) -> Part {
+    Part::Word(Placeholder { name, kind, about: "", unit: "" })
+}
+
+/// How far bonds reach.
+pub const HORIZON: Keyword = keyword(
+    "horizon",
+    &[place("H", Kind::Number)],
+    "The horizon, in spacings of the lattice.",
+    Keyword::NEEDED,
+);
+
+/// Which modulus bond-based laws keep.
+pub const FORM: Keyword = keyword(
+    "form",
+    &[place("modulus", Kind::Choice(&alternatives(&Form::NAMES)))],
+    "Which modulus of the material the bonds keep, as they fix ν = 1/4: c = 18K/(πδ⁴), 30G/(πδ⁴) (Walayat et al. 2023) or \
+     12E/(πδ⁴).",
+    "bulk",
+);
+
+/// The critical stretch.
+pub const S00: Keyword = keyword(
+    "s00",
+    &[place("value", Kind::Number)],
+    "The critical stretch, in place of that of the material or of its fracture energy.",
+    "",
+);
+
+/// By which part compression strengthens bonds.
+pub const ALPHA: Keyword =
+    keyword("alpha", &[place("value", Kind::Number)], "In place of that of the material.", "");
 
 /// Reads `ID horizon H [s00 S] [alpha A]` and the law's own words.
 fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
@@ -221,11 +276,11 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let mut horizon = None;
     let mut s = of(m, law);
     let mut chosen = false;
-    // The peak of bonds that soften may follow from the material.
-    let mut missing: Vec<&str> = keywords(law).filter(|k| *k != "form" && !law.softens()).collect();
-    let common: &[&str] = if law.softens() { &["horizon"] } else { &["horizon", "s00", "alpha"] };
-    let known: Vec<&'static str> = common.iter().copied().chain(keywords(law)).collect();
-    while let Some(word) = args.peek().filter(|w| !matches!(w.text.as_str(), "plastic" | "nonlinear")) {
+    let keywords = keywords(law);
+    let known: Vec<&'static str> = keywords.iter().map(|keyword| keyword.word).collect();
+    let needed = keywords.iter().filter(|keyword| keyword.needed() && keyword.word != HORIZON.word);
+    let mut missing: Vec<&str> = needed.map(|keyword| keyword.word).collect();
+    while let Some(word) = args.peek().filter(|w| LawKind::unloading_as(&w.text).is_none()) {
         let key = args.choice("keyword of a material", &known)?;
         missing.retain(|k| *k != key);
         match key {
@@ -237,8 +292,7 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
                 horizon = Some(ratio);
             }
             "form" => {
-                let name = args.choice("form of the micro-modulus", &Form::NAMES.map(|f| f.0))?;
-                s.form = Form::from_name(name).unwrap_or_default();
+                s.form = one_in("form of the micro-modulus", args, &Form::NAMES)?;
                 chosen = true;
             }
             "s00" => s.strength = Some(Strength::Stretch(args.positive("s00")?)),

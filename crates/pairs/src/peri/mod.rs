@@ -5,6 +5,7 @@ mod bond_weights;
 mod eps;
 mod force;
 mod horizon;
+mod lines;
 mod lps;
 pub mod materials;
 mod numbers;
@@ -21,6 +22,7 @@ use super::{ByPart, Deck, Facts, Pair, Scales, TypePairs};
 use bond_probe::BondProbe;
 pub use eps::PeriEps;
 use force::Force;
+pub use lines::of_bonds;
 pub use lps::PeriLps;
 use materials::Materials;
 pub use numbers::{beyond_elastic, lasting, stiffness, written};
@@ -35,6 +37,7 @@ use perigrain_peri::law::{LawKind, Style};
 use perigrain_plan::Op;
 use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::Probe;
+use perigrain_styles::words::Words;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::{Region, World};
 pub use plastic::PeriPmbPlastic;
@@ -70,11 +73,15 @@ struct Solid {
     reunite: Option<(bool, Span)>,
 }
 
-/// Which constant of the lattice the micro-modulus makes right.
-#[derive(Clone, Copy, PartialEq, Eq)]
+/// Which constant of a simple cubic lattice of the present spacing the micro-modulus makes right.
+#[derive(Clone, Copy, PartialEq, Eq, Words)]
+#[word(what = "what to calibrate")]
 enum Calibrate {
+    /// The micro-modulus of a bond-based law is that of a whole ball.
     No,
+    /// It is divided by what makes the bulk modulus right on a simple cubic lattice of the present spacing; s00 stays.
     Bulk,
+    /// The same for Young's modulus along an axis, at ν = 1/4.
     Young,
 }
 
@@ -117,18 +124,18 @@ type Coeff = (PmbCoeff, Moduli);
 
 /// Reads the coefficients of a law as LAMMPS writes them.
 fn numbers(law: &Style, args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
-    let (mut c, mut moduli) = stiffness(law, args)?;
+    let (mut c, mut moduli) = stiffness(law, args, cx)?;
     let span = args.here();
     let (horizon, s00, alpha) = match &law.curve {
         Some(curve) => {
-            let horizon = args.positive("the horizon")?;
+            let horizon = numbers::reach(args, cx)?;
             beyond_elastic(law, args, &mut moduli)?;
-            let at = args.here();
-            let energy = args.positive("the fracture energy G")?;
-            (horizon, softening::last_stretch(curve, (moduli.peak, energy), (c, horizon), at)?, 0.0)
+            let energy = numbers::area(args, cx)?;
+            let s00 = softening::last_stretch(curve, (moduli.peak, energy.value), (c, horizon), energy.span)?;
+            (horizon, s00, 0.0)
         }
         None => {
-            let lasting = lasting(args)?;
+            let lasting = lasting(args, cx)?;
             beyond_elastic(law, args, &mut moduli)?;
             lasting
         }

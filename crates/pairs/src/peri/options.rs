@@ -5,19 +5,123 @@ use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_peri::families::{BondWeights, Families, ForceUnit, Influence, VolumeRule};
 use perigrain_styles::BuildCx;
+use perigrain_styles::words::{At, Kind, Value, Words, alternatives, one_in};
+use perigrain_world::Region;
 
-const KNOWN: [&str; 10] = [
-    "force",
-    "volume",
-    "influence",
-    "surface",
-    "horizon",
-    "calibrate",
-    "nofail",
-    "broken",
-    "repulsion",
-    "family",
-];
+/// The words of `peri_modify`.
+#[derive(Words)]
+pub struct Line {
+    #[word(keyword, like = Units, shown = "density, with materials newton")]
+    force: Option<ForceUnit>,
+    #[word(keyword, like = Volumes, shown = "lammps")]
+    volume: Option<VolumeRule>,
+    #[word(keyword, shown = "no", placed)]
+    calibrate: Option<At<Calibrate>>,
+    /// How the stiffness of a bond depends on its length |ξ|: as 1, 1/|ξ| or exp(−|ξ|²/δ²).
+    #[word(keyword, like = Influences, shown = "one, of state-based laws inverse", placed)]
+    influence: Option<At<Influence>>,
+    #[word(keyword, shown = "no", placed)]
+    surface: Option<At<Surface>>,
+    #[word(keyword, shown = "lattice", placed)]
+    horizon: Option<At<Spacing>>,
+    /// Whether a broken bond still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass
+    /// through each other; bonds of `peri_crack` too, and under state-based laws with c = 18K/(πδ⁴).
+    #[word(keyword, name = "compress compress", what = "broken compress", shown = "no")]
+    broken: Option<(Compress, bool)>,
+    /// A region: bonds of which one end lies in it at the start never break.
+    #[word(keyword, name = "region ID")]
+    nofail: Vec<(Within, Region)>,
+    /// Whether close particles repel each other; contact laws keep them apart in place of that (`group … surface`).
+    #[word(keyword, what = "repulsion", shown = "yes")]
+    repulsion: Option<bool>,
+    #[word(keyword, placed)]
+    family: Option<At<Members>>,
+}
+
+/// What forces are.
+#[derive(Words)]
+#[word(what = "unit of forces", of = ForceUnit)]
+enum Units {
+    /// Force densities, with the density in the place of mass, as in LAMMPS.
+    Density,
+    /// True forces and masses ρV.
+    Newton,
+}
+
+/// How bonds near the horizon are weighed.
+#[derive(Words)]
+#[word(what = "volume rule", of = VolumeRule)]
+enum Volumes {
+    /// Bonds within half a spacing of the horizon count (δ + dx/2 − |ξ|)/dx.
+    Lammps,
+    /// All bonds count wholly.
+    None,
+    /// The family extends to δ + dx/2, where LAMMPS' weight vanishes.
+    Full,
+}
+
+/// An influence function.
+struct Influences(Influence);
+
+impl From<Influences> for Influence {
+    fn from(named: Influences) -> Self {
+        named.0
+    }
+}
+
+impl Value for Influences {
+    const KIND: Kind = Kind::Choice(&alternatives(&Influence::NAMES));
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        one_in("influence function", args, &Influence::NAMES).map(Self)
+    }
+}
+
+/// What makes up for bonds that lack at surfaces.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "correction of surfaces")]
+enum Surface {
+    /// Nothing.
+    No,
+    /// The bonds of each particle of a bond-based law are as much stiffer as its family is poorer than a whole one.
+    Energy,
+    /// Families are made whole in each direction.
+    Tensor,
+}
+
+/// In which spacing horizons of materials count.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "spacing that horizons count in")]
+enum Spacing {
+    /// In that of the lattice.
+    Lattice,
+    /// In the spacing around each particle, the cube root of the mean volume of the particles within two edges of its own.
+    Own,
+}
+
+/// What broken bonds may do.
+#[derive(Words)]
+#[word(what = "what broken bonds do")]
+enum Compress {
+    Compress,
+}
+
+/// Where bonds last.
+#[derive(Words)]
+#[word(what = "what lasts")]
+enum Within {
+    Region,
+}
+
+/// Which members of one family contact laws keep out.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "rule of contacts in a family")]
+enum Members {
+    /// Contact laws keep members of one family out for good, whether their bond lives or not.
+    Exclude,
+    /// They keep them out as long as the bond lives: surfaces that were torn apart meet again from the step after. Spheres of bonded
+    /// neighbours must then not overlap (`set … peri/radius half`).
+    Broken,
+}
 
 /// Reads the words of a `peri_modify`.
 ///
@@ -32,77 +136,57 @@ pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> 
         );
     }
     if args.is_empty() {
-        let text = format!("peri_modify needs an option: {}", KNOWN.join(", "));
+        let text = format!("peri_modify needs an option: {}", Line::GRAMMAR.keywords().join(", "));
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
-    while let Some(word) = args.next() {
-        match word.text.as_str() {
-            "force" => {
-                style.unit = Some(match args.choice("unit of forces", &["density", "newton"])? {
-                    "newton" => ForceUnit::Newton,
-                    _ => ForceUnit::Density,
-                });
-            }
-            "volume" => {
-                style.volume = match args.choice("volume rule", &["lammps", "none", "full"])? {
-                    "none" => VolumeRule::None,
-                    "full" => VolumeRule::Full,
-                    _ => VolumeRule::Lammps,
-                };
-            }
-            "influence" => {
-                let name = args.choice("influence function", &Influence::NAMES.map(|n| n.0))?;
-                let found = Influence::NAMES.iter().find(|n| n.0 == name);
-                style.law.influence = found.map_or_else(Influence::default, |n| n.1);
-                settled(style, &word.text, word.span, cx)?;
-            }
-            "surface" => {
-                let how = args.choice("correction of surfaces", &["no", "energy", "tensor"])?;
-                if !style.law.kind.bond_based && how == "energy" {
-                    let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                // Bonds that remember have no columns of sites: each is weighed by itself.
-                let remember = style.law.kind.edge.is_some();
-                style.law.surface = how == "energy" && !remember;
-                style.weights.whole_energies = how == "energy" && remember;
-                style.weights.whole_families = how == "tensor";
-                settled(style, &word.text, word.span, cx)?;
-            }
-            "horizon" => {
-                style.weights.own_horizons =
-                    args.choice("spacing that horizons count in", &["lattice", "own"])? == "own";
-                bond_weights::needs_materials(style, word.span)?;
-                settled(style, &word.text, word.span, cx)?;
-            }
-            "broken" => {
-                args.choice("what broken bonds do", &["compress"])?;
-                style.compress = args.flag("broken compress")?;
-            }
-            "calibrate" => {
-                let how = args.choice("what to calibrate", &["no", "bulk", "young"])?;
-                if !style.law.kind.bond_based && how != "no" {
-                    let text = "peri_modify calibrate concerns bond-based styles: a state-based solid has its bulk modulus on any lattice";
-                    return fail(Code::CONFLICT, word.span, text);
-                }
-                style.calibrate = match how {
-                    "bulk" => Calibrate::Bulk,
-                    "young" => Calibrate::Young,
-                    _ => Calibrate::No,
-                };
-            }
-            "repulsion" => style.no_repulsion = !args.flag("repulsion")?,
-            "nofail" => {
-                args.choice("what lasts", &["region"])?;
-                style.lasting.push(cx.region(args.expect("a region")?)?.clone());
-            }
-            "family" => {
-                let how = args.choice("rule of contacts in a family", &["exclude", "broken"])?;
-                style.reunite = Some((how == "broken", word.span));
-            }
-            _ => return Err(args.unknown(word, &KNOWN)),
-        }
+    let line: Line = perigrain_styles::words::read(args, cx)?;
+    style.unit = line.force.or(style.unit);
+    style.volume = line.volume.unwrap_or(style.volume);
+    if let Some(at) = line.influence {
+        style.law.influence = at.value;
+        settled(style, "influence", at.span, cx)?;
     }
+    if let Some(at) = line.surface {
+        correct(style, at)?;
+        settled(style, "surface", at.span, cx)?;
+    }
+    if let Some(at) = line.horizon {
+        style.weights.own_horizons = at.value == Spacing::Own;
+        bond_weights::needs_materials(style, at.span)?;
+        settled(style, "horizon", at.span, cx)?;
+    }
+    if let Some((Compress::Compress, compress)) = line.broken {
+        style.compress = compress;
+    }
+    if let Some(at) = line.calibrate {
+        if !style.law.kind.bond_based && at.value != Calibrate::No {
+            let text = "peri_modify calibrate concerns bond-based styles: a state-based solid has its bulk modulus on any lattice";
+            return fail(Code::CONFLICT, at.span, text);
+        }
+        style.calibrate = at.value;
+    }
+    if let Some(repulsion) = line.repulsion {
+        style.no_repulsion = !repulsion;
+    }
+    style.lasting.extend(line.nofail.into_iter().map(|(Within::Region, region)| region));
+    if let Some(at) = line.family {
+        style.reunite = Some((at.value == Members::Broken, at.span));
+    }
+    Ok(())
+}
+
+/// Sets the correction of surfaces.
+fn correct(style: &mut Solid, surface: At<Surface>) -> Result<()> {
+    let how = surface.value;
+    if !style.law.kind.bond_based && how == Surface::Energy {
+        let text = "peri_modify surface energy concerns peri/pmb: a state-based particle weighs its own family (`surface tensor` corrects it, too)";
+        return fail(Code::CONFLICT, surface.span, text);
+    }
+    // Bonds that remember have no columns of sites: each is weighed by itself.
+    let remember = style.law.kind.edge.is_some();
+    style.law.surface = how == Surface::Energy && !remember;
+    style.weights.whole_energies = how == Surface::Energy && remember;
+    style.weights.whole_families = how == Surface::Tensor;
     Ok(())
 }
 

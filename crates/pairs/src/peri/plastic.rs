@@ -1,12 +1,14 @@
 //! `pair_style peri/pmb/plastic`: bonds that flow in compression.
 
+use super::lines::forms;
 use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
+use std::sync::LazyLock;
 
 /// The style.
 pub struct PeriPmbPlastic;
@@ -18,12 +20,7 @@ impl Style for PeriPmbPlastic {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style peri/pmb/plastic\n\
-                     pair_coeff i j c horizon s00 alpha syc [plastic|nonlinear]\n\
-                     pair_coeff i j material ID horizon H syc value [plastic|nonlinear] [form bulk|shear|young] [s00 value] [alpha value]\n\
-                     pair_coeff i j mix arithmetic|harmonic|geometric",
-            ),
+            syntax: Syntax::Forms(*FORMS),
             summary: "Bond-based peridynamics whose bonds are perfectly plastic in compression.",
             text: "As `peri/pmb`, but a bond never pushes with more than c |syc| (Walayat et al. 2023, equation 6); `syc` is a \
                 stretch below zero. The paper does not say what happens on the way back. `plastic` (the default): the bond \
@@ -36,6 +33,8 @@ impl Style for PeriPmbPlastic {
         }
     }
 }
+
+static FORMS: LazyLock<&[Form]> = LazyLock::new(|| forms(law::PLASTIC.style(), Grammar::NONE, false));
 
 impl PairStyle for PeriPmbPlastic {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {

@@ -1,5 +1,6 @@
 //! `pair_style peri/pmb/softening`: bonds that lose their strength little by little beyond a peak.
 
+use super::lines::forms;
 use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
@@ -7,8 +8,9 @@ use perigrain_lang::Args;
 use perigrain_peri::law;
 use perigrain_peri::law::style::Curve;
 use perigrain_peri::moduli::curve_area;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Value, Words, inner};
 use perigrain_styles::{BuildCx, Doc, Style};
+use std::sync::LazyLock;
 
 /// The style.
 pub struct PeriPmbSoftening;
@@ -20,15 +22,10 @@ impl Style for PeriPmbSoftening {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style peri/pmb/softening [linear|exponential]\n\
-                     pair_coeff i j c horizon peak G\n\
-                     pair_coeff i j material ID horizon H [peak value] [form bulk|shear|young]\n\
-                     pair_coeff i j mix arithmetic|harmonic|geometric",
-            ),
+            syntax: Syntax::Forms(*FORMS),
             summary: "Bond-based peridynamics whose bonds soften beyond a peak: concrete, ceramics, rock.",
-            text: "Up to the stretch `peak` a bond is that of `peri/pmb`. Beyond it the force falls, `linear` (the default) as \
-                c p (s_f − s)/(s_f − p), or `exponential` as c p exp(−(s − p)/a), p being the peak. How far is settled by the \
+            text: "Up to the stretch `peak` a bond is that of `peri/pmb`. Beyond it the force falls as the style's word \
+                says, p being the peak. How far is settled by the \
                 fracture energy G [energy/area]: the area under the curve is 5 G/(π c δ⁵), that of whole families that a \
                 crack parts. A linear bond breaks where nothing is left, an exponential one where a thousandth of the peak is, \
                 which ends the curve. One curve holds for all pairs.\n\n\
@@ -49,14 +46,33 @@ impl Style for PeriPmbSoftening {
     }
 }
 
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    #[word(with = curve, kind = Curves::KIND)]
+    curve: Option<Curves>,
+}
+
+/// How the force falls beyond the peak.
+#[derive(Words)]
+enum Curves {
+    /// As c p (s_f − s)/(s_f − p), the default.
+    Linear,
+    /// As c p exp(−(s − p)/a).
+    Exponential,
+}
+
+fn curve(args: &mut Args, cx: &BuildCx) -> Result<Curves> {
+    Curves::value("curve", args, cx)
+}
+
+static FORMS: LazyLock<&[Form]> = LazyLock::new(|| forms(law::LINEAR.style(), Line::GRAMMAR, false));
+
 impl PairStyle for PeriPmbSoftening {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {
-        let kind = match args.is_empty() {
-            true => law::LINEAR,
-            false => match args.choice("curve", &["linear", "exponential"])? {
-                "linear" => law::LINEAR,
-                _ => law::EXPONENTIAL,
-            },
+        let kind = match inner::<Line>(args, cx)?.curve {
+            Some(Curves::Exponential) => law::EXPONENTIAL,
+            Some(Curves::Linear) | None => law::LINEAR,
         };
         start(self.name(), kind, cx)
     }

@@ -1,12 +1,14 @@
 //! `pair_style peri/ves`: the viscoelastic peridynamic solid, whose shear stiffness relaxes.
 
+use super::lines::forms;
 use super::start;
 use crate::{Pair, PairStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_peri::law;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, Style};
+use std::sync::LazyLock;
 
 /// The style.
 pub struct PeriVes;
@@ -18,12 +20,7 @@ impl Style for PeriVes {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "pair_style peri/ves\n\
-                     pair_coeff i j K G horizon s00 alpha lambda tau\n\
-                     pair_coeff i j material ID horizon H lambda L tau T [s00 value] [alpha value]\n\
-                     pair_coeff i j mix arithmetic|harmonic|geometric",
-            ),
+            syntax: Syntax::Forms(*FORMS),
             summary: "State-based viscoelasticity: a share of the shear stiffness relaxes.",
             text: "As `peri/lps`, but of the deviatoric extension e_d = e − θ|ξ|/3 the share `lambda` sits in a Maxwell \
                 element: t_d = (15Gω/m) ((1 − λ) e_d + λ D), where D, the element's extension, follows dD/dt = de_d/dt − D/τ \
@@ -37,6 +34,8 @@ impl Style for PeriVes {
         }
     }
 }
+
+static FORMS: LazyLock<&[Form]> = LazyLock::new(|| forms(law::VES.style(), Grammar::NONE, false));
 
 impl PairStyle for PeriVes {
     fn build(&self, _args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Pair>> {

@@ -43,6 +43,8 @@ pub enum Kind {
     Reference,
     /// One of several words, each with words of its own behind it.
     Choice(&'static [Alternative]),
+    /// The same, of which syntax lines show the name of the place.
+    Models(&'static [Alternative]),
     /// Words in order and keywords.
     Words(&'static Grammar),
     /// This, or `NULL` for nothing.
@@ -55,7 +57,7 @@ impl Kind {
     /// The words that may stand there.
     pub fn choices(&self) -> &'static [Alternative] {
         match self {
-            Self::Choice(all) => all,
+            Self::Choice(all) | Self::Models(all) => all,
             Self::Or(words, _) => words.choices(),
             _ => &[],
         }
@@ -127,7 +129,7 @@ pub struct Keyword {
     pub values: &'static [Part],
     /// A sentence about it.
     pub about: &'static str,
-    /// What holds without it; empty if its sentence says so.
+    /// What holds without it; empty if its sentence says so, [`Keyword::NEEDED`] if it must stand there.
     pub default: &'static str,
     /// Each time that it stands there counts.
     pub repeats: bool,
@@ -164,6 +166,19 @@ pub enum Syntax {
     Forms(&'static [Form]),
     /// Lines written by hand, as `run N [upto] [pre no]`; irregular ones alone.
     Written(&'static str),
+}
+
+impl Syntax {
+    /// The words behind a style's name, as far as they are declared.
+    pub fn behind(&self) -> &'static Grammar {
+        match self {
+            Self::Behind(grammar) => grammar,
+            Self::Forms(forms) => {
+                forms.iter().find(|form| form.head.is_empty()).map_or(Grammar::NONE, |form| form.grammar)
+            }
+            Self::Written(_) => Grammar::NONE,
+        }
+    }
 }
 
 impl Form {
@@ -257,7 +272,8 @@ impl Grammar {
         let mut words: Vec<String> = self.in_order().into_iter().map(|part| part.shown()).collect();
         for (names, keyword) in self.together() {
             let again = if keyword.repeats { "…" } else { "" };
-            words.push(format!("[{}]{again}", keyword.shown_as(&names)));
+            let shown = keyword.shown_as(&names);
+            words.push(if keyword.needed() { shown } else { format!("[{shown}]{again}") });
         }
         words.join(" ")
     }
@@ -329,9 +345,22 @@ impl Form {
 }
 
 impl Keyword {
+    /// The default of a keyword that must stand there.
+    pub const NEEDED: &'static str = "required";
+
+    /// Whether it must stand there.
+    pub fn needed(&self) -> bool {
+        self.default == Self::NEEDED
+    }
+
     /// The keyword with what stands behind it.
     pub fn shown(&self) -> String {
         self.shown_as(self.word)
+    }
+
+    /// The same in brackets, unless it must stand there.
+    pub fn bracketed(&self) -> String {
+        if self.needed() { self.shown() } else { format!("[{}]", self.shown()) }
     }
 
     /// The same by another name.

@@ -162,6 +162,17 @@ impl Value for Positive {
     }
 }
 
+/// A number that is not below zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NonNegative(pub f64);
+
+impl Value for NonNegative {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.non_negative(what).map(Self)
+    }
+}
+
 impl Value for GroupId {
     const KIND: Kind = Kind::Group;
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {

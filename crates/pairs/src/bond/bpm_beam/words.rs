@@ -1,50 +1,203 @@
 //! The words of bond bpm/beam.
 
-use crate::bond::options::Options;
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use crate::bond::options::{Breaking, Options};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::cformat::general;
 use perigrain_bonded::beam::{Coeffs, Criterion, Potential};
 use perigrain_bonded::stiffness::Shear;
 use perigrain_lang::Args;
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Alternative, Kind, Value, Words};
 
-/// Reads the line of the style.
-///
-/// # Errors
-/// Every mistake in it.
-pub fn style(args: &mut Args) -> Result<(Options, Potential)> {
-    let mut law = Potential { shear: Shear::Paper, criterion: Criterion::Sum, smooth: false };
-    let options = Options::read(args, false, |word, args| {
-        match word {
-            "shear" => law.shear = shear(args)?,
-            "criterion" => {
-                let name = args.choice("criterion", &["sum", "separate"])?;
-                law.criterion = if name == "sum" { Criterion::Sum } else { Criterion::Separate };
-            }
-            "kinematics" => {
-                let span = args.here();
-                if args.choice("kinematics", &["potential", "incremental"])? == "incremental" {
-                    let text = "bond_style bpm/beam: `kinematics incremental` is not in perigrain yet";
-                    let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-                    return Err(d.help("`kinematics potential` has the same forces for small turns").into());
-                }
-            }
-            _ => return Ok(false),
-        }
-        Ok(true)
-    })?;
-    law.smooth = options.smooth;
-    Ok((options, law))
+/// The words of the style.
+#[derive(Words)]
+pub struct Style {
+    #[word(keyword, default = Shearing::Paper)]
+    shear: Shearing,
+    #[word(keyword, like = Criteria, default = Criterion::Sum)]
+    criterion: Criterion,
+    /// How the motion of the ends bends a beam.
+    #[word(keyword = "kinematics", shown = "potential")]
+    _kinematics: Option<Kinematics>,
+    #[word(flatten)]
+    breaking: Breaking,
+    /// Whether forces are multiplied with 1 − B⁴, B the share of the strength that is used up; energy is not kept then.
+    #[word(keyword)]
+    smooth: bool,
 }
 
-fn shear(args: &mut Args) -> Result<Shear> {
-    Ok(match args.choice("shear stiffness", &["paper", "timoshenko", "none"])? {
-        "paper" => Shear::Paper,
-        "none" => Shear::None,
-        _ if args.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) => {
-            Shear::Timoshenko(args.positive("the factor of shear of the section")?)
+/// How stiff bonds are against shear.
+#[derive(Words)]
+#[word(what = "shear stiffness")]
+enum Shearing {
+    /// G A/r0.
+    Paper,
+    /// 1/k = r0/(K G A) + r0³/(12 E I), K being 0.9 unless given, with which a chain of bonds is a Timoshenko beam at its
+    /// nodes however few they are.
+    Timoshenko(#[word(name = "K", what = "the factor of shear of the section", positive)] Option<f64>),
+    /// No shear.
+    None,
+}
+
+/// When bonds break.
+#[derive(Words)]
+#[word(what = "criterion", of = Criterion)]
+enum Criteria {
+    /// Both sums count.
+    Sum,
+    /// Each of the four is tested alone, N and M_b only where the bond is pulled.
+    Separate,
+}
+
+/// The only kinematics that there are.
+struct Kinematics;
+
+impl Value for Kinematics {
+    const KIND: Kind = Kind::Choice(&[Alternative { word: "potential", about: "", parts: &[] }]);
+
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let span = args.here();
+        if args.choice("kinematics", &["potential", "incremental"])? == "incremental" {
+            let text = "bond_style bpm/beam: `kinematics incremental` is not in perigrain yet";
+            let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
+            return Err(d.help("`kinematics potential` has the same forces for small turns").into());
         }
-        _ => Shear::Timoshenko(0.9),
-    })
+        Ok(Self)
+    }
+}
+
+impl Style {
+    /// The options and the law.
+    ///
+    /// # Errors
+    /// `break no` with smoothed forces.
+    pub fn options(self) -> Result<(Options, Potential)> {
+        let shear = match self.shear {
+            Shearing::Paper => Shear::Paper,
+            Shearing::Timoshenko(factor) => Shear::Timoshenko(factor.unwrap_or(0.9)),
+            Shearing::None => Shear::None,
+        };
+        let options = self.breaking.options(self.smooth)?;
+        Ok((options, Potential { shear, criterion: self.criterion, smooth: self.smooth }))
+    }
+}
+
+/// The words of `bond_coeff`.
+#[derive(Words)]
+#[word(refused = "yield")]
+pub struct Own {
+    /// Young's modulus E [pressure].
+    #[word(name = "E", positive)]
+    young: f64,
+    /// Poisson's ratio nu.
+    #[word(name = "nu", with = poisson, kind = Kind::Number)]
+    poisson: f64,
+    radius: Thickness,
+    /// Strengths in tension and in shear, S1 and S2 below; without them nothing breaks [pressure].
+    #[word(keyword, name = "S1 S2", what = "the strength {}", positive)]
+    strength: Option<[f64; 2]>,
+    /// How much moments count for the strength, from 0 to 1: B below.
+    #[word(keyword, name = "B", with = moment, kind = Kind::Number, default = 1.0)]
+    moment: f64,
+    /// Multiplies both strengths of every bond with a number of a Weibull distribution of modulus M and mean 1, which belongs
+    /// to the IDs of its ends.
+    #[word(keyword, name = "M SEED")]
+    weibull: Option<(Modulus, Seed)>,
+    /// Dashpots of so many times the critical damping of the two ends on the bond: of all modes, or of stretch, shear, twist and
+    /// bending.
+    #[word(keyword, name = "Z")]
+    damping: Option<Dashpots>,
+}
+
+/// The radius of a beam in a deck.
+#[derive(Words)]
+#[word(what = "radius of the beam")]
+enum Thickness {
+    /// The radius of all bonds.
+    Radius(#[word(name = "R", what = "the radius of the beam", positive)] f64),
+    /// The radius over that of the bond's smaller end.
+    Ratio(#[word(name = "L", what = "the radius of the beam over that of its smaller end", positive)] f64),
+}
+
+/// The modulus of a Weibull distribution.
+struct Modulus(f64);
+
+impl Value for Modulus {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive("the modulus of the scatter").map(Self)
+    }
+}
+
+/// The seed of a scatter of strengths.
+struct Seed(u64);
+
+impl Value for Seed {
+    const KIND: Kind = Kind::Whole;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        Ok(Self(args.integer_from(1, "the seed")? as u64))
+    }
+}
+
+/// One number for all modes, or four.
+#[derive(Words)]
+struct Dashpots {
+    #[word(name = "Z", what = "the damping as a share of the critical one", non_negative)]
+    first: f64,
+    #[word(name = "ZS ZT ZB", what = "the damping as a share of the critical one", non_negative)]
+    others: Option<[f64; 3]>,
+}
+
+fn poisson(args: &mut Args, _: &BuildCx) -> Result<f64> {
+    let span = args.here();
+    let poisson = args.number("Poisson's ratio nu")?;
+    if !(poisson > -1.0 && poisson <= 0.5) {
+        return fail(Code::BAD_VALUE, span, "Poisson's ratio lies between -1 and 0.5");
+    }
+    Ok(poisson)
+}
+
+fn moment(args: &mut Args, _: &BuildCx) -> Result<f64> {
+    let span = args.here();
+    let moment = args.non_negative("how much moments count")?;
+    if moment > 1.0 {
+        return fail(Code::BAD_VALUE, span, "moments count between 0 and 1");
+    }
+    Ok(moment)
+}
+
+impl Own {
+    /// The coefficients; `at` is the place of the line's first word.
+    ///
+    /// # Errors
+    /// Words about a strength that is missing.
+    pub fn line(self, at: Span) -> Result<Line> {
+        if self.strength.is_none() && (self.weibull.is_some() || self.moment != 1.0) {
+            let text = "`moment` and `weibull` are about a `strength`, which is missing";
+            let d = Diagnostic::error(Code::CONFLICT, at, text);
+            return Err(d.help("`strength S1 S2`: in tension and in shear").into());
+        }
+        let coeffs = Coeffs {
+            elastic: [self.young, self.poisson],
+            strength: self.strength.unwrap_or([f64::INFINITY; 2]),
+            moment: self.moment,
+            damping: self.damping.map_or([0.0; 4], Dashpots::modes),
+        };
+        let radius = match self.radius {
+            Thickness::Radius(r) => Radius::Given(r),
+            Thickness::Ratio(ratio) => Radius::Ratio(ratio),
+        };
+        let weibull = self.weibull.map(|(Modulus(modulus), Seed(seed))| (modulus, seed));
+        Ok(Line { coeffs, radius, weibull })
+    }
+}
+
+impl Dashpots {
+    /// Of stretch, shear, twist and bending.
+    fn modes(self) -> [f64; 4] {
+        let [shear, twist, bend] = self.others.unwrap_or([self.first; 3]);
+        [self.first, shear, twist, bend]
+    }
 }
 
 /// How thick beams are.
@@ -85,62 +238,6 @@ pub struct Line {
 }
 
 impl Line {
-    /// Reads the words after the types.
-    ///
-    /// # Errors
-    /// Every mistake in them.
-    pub fn read(args: &mut Args) -> Result<Self> {
-        let young = args.positive("Young's modulus E")?;
-        let span = args.here();
-        let poisson = args.number("Poisson's ratio nu")?;
-        if !(poisson > -1.0 && poisson <= 0.5) {
-            return fail(Code::BAD_VALUE, span, "Poisson's ratio lies between -1 and 0.5");
-        }
-        let radius = match args.choice("radius of the beam", &["radius", "ratio"])? {
-            "radius" => Radius::Given(args.positive("the radius of the beam")?),
-            _ => Radius::Ratio(args.positive("the radius of the beam over that of its smaller end")?),
-        };
-        let coeffs = Coeffs {
-            elastic: [young, poisson],
-            strength: [f64::INFINITY; 2],
-            moment: 1.0,
-            damping: [0.0; 4],
-        };
-        let mut line = Self { coeffs, radius, weibull: None };
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "strength" => {
-                    let tension = args.positive("the strength in tension")?;
-                    line.coeffs.strength = [tension, args.positive("the strength in shear")?];
-                }
-                "moment" => {
-                    let span = args.here();
-                    line.coeffs.moment = args.non_negative("how much moments count")?;
-                    if line.coeffs.moment > 1.0 {
-                        return fail(Code::BAD_VALUE, span, "moments count between 0 and 1");
-                    }
-                }
-                "weibull" => {
-                    let modulus = args.positive("the modulus of the scatter")?;
-                    line.weibull = Some((modulus, args.integer_from(1, "the seed")? as u64));
-                }
-                "damping" => line.coeffs.damping = damping(args)?,
-                "yield" => {
-                    let text = "bond_style bpm/beam: `yield` is not in perigrain yet";
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
-                _ => return Err(args.unknown(word, &["strength", "moment", "weibull", "damping"])),
-            }
-        }
-        let unbroken = line.coeffs.strength == [f64::INFINITY; 2];
-        if unbroken && (line.weibull.is_some() || line.coeffs.moment != 1.0) {
-            let text = "`moment` and `weibull` are about a `strength`, which is missing";
-            let d = Diagnostic::error(Code::CONFLICT, args.name_span(), text);
-            return Err(d.help("`strength S1 S2`: in tension and in shear").into());
-        }
-        Ok(line)
-    }
-
     /// As a data file has it.
     pub fn written(&self) -> String {
         let number = |a: f64| general(a, 16);
@@ -166,14 +263,4 @@ impl Line {
         }
         text
     }
-}
-
-/// One number for all modes, or four.
-fn damping(args: &mut Args) -> Result<[f64; 4]> {
-    let what = "the damping as a share of the critical one";
-    let first = args.non_negative(what)?;
-    if args.peek().is_none_or(|w| w.text.parse::<f64>().is_err()) {
-        return Ok([first; 4]);
-    }
-    Ok([first, args.non_negative(what)?, args.non_negative(what)?, args.non_negative(what)?])
 }

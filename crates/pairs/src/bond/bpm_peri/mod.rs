@@ -4,19 +4,20 @@ mod op;
 mod table;
 
 use super::{BondForce, BondStyle, Pull, Stretched, breaking_weights};
-use crate::peri::{beyond_elastic, lasting, stiffness, written};
+use crate::peri::{beyond_elastic, lasting, of_bonds, stiffness, written};
 use op::Force;
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_base::math::cformat::general;
-use perigrain_lang::Args;
+use perigrain_lang::{Args, Word};
 use perigrain_peri::families::{Moduli, PmbCoeff};
 use perigrain_peri::law::{LAWS, PMB, Style as BondLaw};
 use perigrain_plan::Op;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Form, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::World;
 use perigrain_world::columns::VOLUME_PROPERTY;
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 /// The style.
 pub struct BpmPeri;
@@ -27,13 +28,7 @@ impl Style for BpmPeri {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "bond_style bpm/peri [force density|newton]\n\
-                     bond_coeff T pmb c horizon s00 alpha\n\
-                     bond_coeff T lps K G horizon s00 alpha\n\
-                     bond_coeff T ves K G lambda tau horizon s00 alpha\n\
-                     bond_coeff T eps K G yield horizon s00 alpha",
-            ),
+            syntax: Syntax::Forms(*FORMS),
             summary: "Peridynamic bonds, of laws pmb, lps, ves and eps, that are made and taken away like any others.",
             text: include_str!("page.md"),
             example: "units si\natom_style bond\nlattice sc 5.0e-4\nregion b block -0.004 0.004 -0.002 0.002 -0.002 0.002 units box\n\
@@ -49,6 +44,8 @@ impl Style for BpmPeri {
         }
     }
 }
+
+static FORMS: LazyLock<&[Form]> = LazyLock::new(|| of_bonds(laws(), Line::GRAMMAR));
 
 impl BondStyle for BpmPeri {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn BondForce>> {
@@ -67,34 +64,44 @@ impl BondStyle for BpmPeri {
                 .help("put `fix vol all property/atom d_vfrac ghost yes` and `set group all d_vfrac …` before it")
                 .into());
         }
-        let mut newton = false;
-        while let Some(word) = args.next() {
-            match word.text.as_str() {
-                "force" => newton = args.choice("unit of forces", &["density", "newton"])? == "newton",
-                "store/local" => {
-                    return refused(
-                        word.span,
-                        "broken bonds are no table here",
-                        "`d_damage`, `compute damage/atom` and thermo's `bonds` count them",
-                    );
-                }
-                "write/history" | "write/reference" | "read/history" | "read/reference" => {
-                    return refused(
-                        word.span,
-                        "the undeformed state is kept with the particles",
-                        "`write_restart` and `read_restart` carry it over",
-                    );
-                }
-                _ => return Err(args.unknown(word, &["force"])),
-            }
-        }
+        let Line { force } = read_or(args, cx, foreign)?;
+        let newton = force == Unit::Newton;
         Ok(Box::new(Declared { newton, coeffs: BTreeMap::new() }))
     }
 }
 
-fn refused<T>(span: Span, why: &str, instead: &str) -> Result<T> {
+/// The words of the style.
+#[derive(Words)]
+struct Line {
+    #[word(keyword, default = Unit::Density)]
+    force: Unit,
+}
+
+/// What forces are.
+#[derive(Clone, Copy, PartialEq, Words)]
+#[word(what = "unit of forces")]
+enum Unit {
+    /// Forces per volume of the particle that they act on, as in LAMMPS.
+    Density,
+    /// True forces: multiplied by the particle's own volume.
+    Newton,
+}
+
+/// The refusal of a keyword that LAMMPS has here.
+fn foreign(word: &Word) -> Option<Diagnostics> {
+    let (why, instead) = match word.text.as_str() {
+        "store/local" => (
+            "broken bonds are no table here",
+            "`d_damage`, `compute damage/atom` and thermo's `bonds` count them",
+        ),
+        "write/history" | "write/reference" | "read/history" | "read/reference" => (
+            "the undeformed state is kept with the particles",
+            "`write_restart` and `read_restart` carry it over",
+        ),
+        _ => return None,
+    };
     let text = format!("this keyword of bond_style bpm/peri is not in perigrain: {why}");
-    Err(Diagnostic::error(Code::NOT_SUPPORTED, span, text).help(instead.to_string()).into())
+    Some(Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).help(instead).into())
 }
 
 /// The options of a line for bonds.
@@ -119,13 +126,13 @@ fn laws() -> impl Iterator<Item = &'static BondLaw> {
 }
 
 /// The words of a law, in LAMMPS' order for bonds.
-fn coefficients(args: &mut Args) -> Result<Coeff> {
+fn coefficients(args: &mut Args, cx: &BuildCx) -> Result<Coeff> {
     let span = args.here();
     let name = args.choice("law of the bonds", &laws().map(|law| law.name).collect::<Vec<_>>())?;
     let law = laws().find(|law| law.name == name).unwrap_or(PMB.style());
-    let (c, mut moduli) = stiffness(law, args)?;
+    let (c, mut moduli) = stiffness(law, args, cx)?;
     beyond_elastic(law, args, &mut moduli)?;
-    let (horizon, s00, alpha) = lasting(args)?;
+    let (horizon, s00, alpha) = lasting(args, cx)?;
     if !args.is_empty() {
         let text = format!("too many numbers for bonds of law {name}");
         return fail(Code::EXTRA_ARGUMENT, span.to(args.here()), text);
@@ -140,7 +147,7 @@ impl BondForce for Declared {
 
     fn coeff(&mut self, kinds: &[u16], args: &mut Args, cx: &BuildCx) -> Result<()> {
         let span = args.here();
-        let coeff = coefficients(args)?;
+        let coeff = coefficients(args, cx)?;
         if let Some(&most) = kinds.iter().find(|k| **k > 255) {
             return fail(Code::NOT_SUPPORTED, cx.span, format!("bond type {most}: bpm/peri knows 255"));
         }

@@ -2,14 +2,15 @@
 
 use super::*;
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_styles::testing::command;
+use perigrain_styles::testing::Bench;
 
 fn read(words: &str) -> Result<Coeff> {
-    let c = command(words);
-    let mut args = Args::new(&c);
-    let coeff = words::coeff(&mut args, &[])?;
-    args.finish()?;
-    Ok(coeff)
+    let mut coeff = None;
+    Bench::default().modify(words, |args, cx| {
+        coeff = Some(words::coeff(args, cx, &[])?);
+        args.finish()
+    })?;
+    Ok(coeff.unwrap())
 }
 
 fn refused(words: &str) -> (Code, String) {
