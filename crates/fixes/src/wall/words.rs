@@ -15,12 +15,12 @@ const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"
 
 /// The numbers of a classic force.
 const CLASSIC: &[Part] = &[
-    number("Kn"),
-    number("Kt"),
-    number("gamma_n"),
-    number("gamma_t"),
-    number("xmu"),
-    Part::Word(Placeholder { name: "dampflag", kind: Kind::Whole, about: "", unit: "" }),
+    Part::number("Kn"),
+    Part::number("Kt"),
+    Part::number("gamma_n"),
+    Part::number("gamma_t"),
+    Part::number("xmu"),
+    Part::bare("dampflag", Kind::Whole),
     Part::Maybe(&[Part::Word(Placeholder {
         name: "limit_damping",
         kind: Kind::Choice(&[Alternative { word: "limit_damping", about: "", parts: &[] }]),
@@ -28,10 +28,6 @@ const CLASSIC: &[Part] = &[
         unit: "",
     })]),
 ];
-
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
-}
 
 const fn style(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
     Alternative { word, about, parts }
@@ -43,7 +39,7 @@ pub const FORCE: Kind = Kind::Choice(&[
         "granular",
         "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
         &[Part::Many(
-            &[Part::Word(Placeholder { name: "MODELS", kind: Kind::Text, about: "", unit: "" })],
+            &[Part::bare("MODELS", Kind::Text)],
             1,
         )],
     ),
