@@ -107,9 +107,6 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         (":plot", _) => return (0, [of(What::Column, knowing::thermo()), values(known)].concat()),
         (":slice", 1) => return (0, [of(What::Attribute, ATTRIBUTES), values(known)].concat()),
         (":slice", 2) => return (0, of(What::Keyword, ["x", "y", "z"])),
-        ("thermo_style", k) if k > 1 && typed[1] == "custom" => {
-            return (0, [of(What::Column, knowing::thermo()), values(known)].concat());
-        }
         ("dump" | "dump_modify" | "write_dump", k) if k > 2 => match typed[k - 2..] {
             [_, "backcolor" | "backcolor2" | "boxcolor"] | ["acolor", _] => {
                 return (0, of(What::Colour, colour_names()));
@@ -120,7 +117,7 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         _ => {}
     }
     let Some((places, page)) = knowing::places(typed, known) else { return (0, vec![]) };
-    let slot = Slot { command, typed, text: page.doc.text, known, folder, word };
+    let slot = Slot { command, typed, known, folder, word };
     let mut out = slot.behind_region(page.written());
     let mut skip = 0;
     for offer in places.iter().flat_map(|place| &place.offers) {
@@ -129,29 +126,16 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         out.append(&mut names);
     }
     for place in places.iter().filter(|place| place.offers.is_empty()) {
-        for here in place.here.iter().filter(|here| !PLACES.contains(&here.as_str())) {
+        for here in &place.here {
             for one in here.trim_end_matches('…').split('|') {
                 let (s, mut names) = slot.names(one, &place.before);
                 skip = skip.max(s);
                 out.append(&mut names);
             }
         }
-        let faces = place.here.iter().any(|here| FACES.contains(&here.as_str()));
-        out.extend(of(
-            What::Keyword,
-            if command == "region" && faces { &["INF", "EDGE"][..] } else { &[] }.iter().copied(),
-        ));
-        let open = place.here.iter().any(|here| PLACES.contains(&here.as_str()));
-        out.extend(of(What::Keyword, open.then_some("NULL")));
     }
     (skip, out)
 }
-
-/// The ends of a region: unbounded, or at the box.
-const FACES: [&str; 8] = ["XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI", "LO", "HI"];
-
-/// Where a wall lies, if it is there at all: numbers, and no words as they stand in syntax lines.
-const PLACES: [&str; 2] = ["lo", "hi"];
 
 /// Attributes of particles that formulas know.
 const ATTRIBUTES: [&str; 16] = [
@@ -163,7 +147,6 @@ const ATTRIBUTES: [&str; 16] = [
 struct Slot<'a> {
     command: &'a str,
     typed: &'a [&'a str],
-    text: &'a str,
     known: &'a Known,
     folder: &'a Path,
     word: &'a str,
@@ -180,11 +163,6 @@ impl Slot<'_> {
         self.known.regions.iter().map(named).collect()
     }
 
-    /// Whether the page lists keywords that may come one after the other.
-    fn text_repeats(&self) -> bool {
-        !knowing::keywords_in(self.text).is_empty()
-    }
-
     /// What a declared word may become.
     fn offered(&self, offer: &Offer) -> (usize, Vec<Candidate>) {
         let place = match offer {
@@ -199,6 +177,8 @@ impl Slot<'_> {
         match place.kind {
             Kind::File => self.files(),
             Kind::Value => (0, values(self.known)),
+            Kind::Column => (0, [of(What::Column, knowing::thermo()), values(self.known)].concat()),
+            Kind::Style(command) => (0, of(What::Style, knowing::styles(command))),
             Kind::Attribute => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
             Kind::Param | Kind::Reference => {
                 (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
@@ -229,10 +209,6 @@ impl Slot<'_> {
             }
             (_, "STYLE" | "style") => (0, of(What::Style, knowing::styles(self.command))),
             (_, "attribute") => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
-            // Behind the first keyword and its value others may come.
-            (_, "value") if before.starts_with("keyword") || self.text_repeats() => {
-                (0, [of(What::Keyword, knowing::keywords_in(self.text)), values(self.known)].concat())
-            }
             (_, "input" | "value") => (0, values(self.known)),
             (_, "NULL") => (0, of(What::Keyword, ["NULL"])),
             (_, "c_ID") => (0, values(self.known).into_iter().filter(|c| c.text.starts_with('c')).collect()),
@@ -240,7 +216,6 @@ impl Slot<'_> {
             (_, p) if p.starts_with("v_") => {
                 (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
             }
-            (_, "KEYWORD" | "keyword") => (0, of(What::Keyword, knowing::keywords_in(self.text))),
             (_, p) if is_word(p) => (0, of(What::Keyword, [p])),
             _ => (0, vec![]),
         }

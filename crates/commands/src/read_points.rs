@@ -9,7 +9,7 @@ use perigrain_geometry::rows::{Property, Rows, is_elsewhere, property};
 use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Syntax, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
@@ -65,13 +65,7 @@ struct Columns(Vec<(Word, Word, Property)>);
 
 impl Value for Columns {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[Part::Many(
-            &[
-                Part::Word(Placeholder { name: "PROPERTY", kind: Kind::Text, about: "", unit: "" }),
-                Part::Word(Placeholder { name: "COLUMN", kind: Kind::Text, about: "", unit: "" }),
-            ],
-            1,
-        )],
+        parts: &[Part::Many(&[Part::bare("PROPERTY", Kind::Text), Part::bare("COLUMN", Kind::Text)], 1)],
         ..*Grammar::NONE
     });
     /// Takes pairs up to the next keyword that is no property in front of a column.

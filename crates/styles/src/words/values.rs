@@ -5,9 +5,10 @@ use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::body::{Quat, turn};
-use perigrain_lang::{Args, Param, ValueRef, Word};
+use perigrain_lang::{Args, Param, RefKind, ValueRef, Word, blame};
 use perigrain_world::{GroupId, Key, Region, World};
 use std::f64::consts::PI;
+use std::marker::PhantomData;
 use std::path::PathBuf;
 
 /// What a word of a line, or a few words, can be read as.
@@ -245,6 +246,37 @@ impl Value for GlobalValue {
     }
 }
 
+/// `v_name` of a variable with a numeric value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference(pub ValueRef);
+
+impl Value for Reference {
+    const KIND: Kind = Kind::Reference;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("an equal-style variable, as `v_name`")?;
+        match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
+            Some(r) => cx.value(&r, false).map(|()| Self(r)),
+            None => {
+                Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into())
+            }
+        }
+    }
+    fn begins(word: &Word) -> bool {
+        word.text.starts_with("v_")
+    }
+}
+
+/// A number of steps, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps(pub i64);
+
+impl Value for Steps {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer_from(0, what).map(Self)
+    }
+}
+
 /// A bond type that there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BondType(pub u16);
@@ -337,6 +369,20 @@ impl Value for VelocityAxis {
     ]);
     fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         common::velocity_axis(args).map(Self)
+    }
+}
+
+/// A value that is read and not used.
+#[derive(Clone, Copy, Debug)]
+pub struct Idle<T>(PhantomData<T>);
+
+impl<T: Value> Value for Idle<T> {
+    const KIND: Kind = T::KIND;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        T::value(what, args, cx).map(|_| Self(PhantomData))
+    }
+    fn begins(word: &Word) -> bool {
+        T::begins(word)
     }
 }
 
