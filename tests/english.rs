@@ -266,8 +266,10 @@ fn only_space(between: &str) -> bool {
 /// All Rust files, the pages of `docs` and the pages at the root, sorted.
 fn files() -> Vec<PathBuf> {
     let mut found = vec![];
-    let mut folders: Vec<PathBuf> =
-        ["src", "crates", "tests", "benches", "fuzz", "docs", "examples"].iter().map(|name| root().join(name)).collect();
+    let mut folders: Vec<PathBuf> = ["src", "crates", "tests", "benches", "fuzz", "docs", "examples"]
+        .iter()
+        .map(|name| root().join(name))
+        .collect();
     while let Some(folder) = folders.pop() {
         let Ok(entries) = fs::read_dir(&folder) else { continue };
         for path in entries.map(|entry| entry.unwrap().path()) {
