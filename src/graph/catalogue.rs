@@ -83,7 +83,7 @@ pub const CATEGORIES: [&str; 14] = [
 ];
 
 /// The styles that decks of a session can name, a table for each kind: the program's own by default, to which a host program
-/// can add before the session starts.
+/// can add before the session starts. The manual and the sub-styles of `hybrid` are those of the program.
 #[derive(Clone)]
 pub struct Tables {
     /// Of `pair_style`.
