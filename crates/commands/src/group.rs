@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_styles::common::{self, free_id, in_group, setting, whole};
 use perigrain_styles::surface::{check_volumes, choose};
 use perigrain_styles::words::{
-    Alternative, At, AtomVariable, Forms, Kind, Part, Placeholder, Syntax, Value, Words,
+    Alternative, At, AtomVariable, Forms, Kind, Part, Syntax, Value, Words,
 };
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use perigrain_world::region::Variable;
@@ -194,7 +194,7 @@ enum Numbers {
 const OPERATORS: [&str; 6] = ["<", "<=", ">", ">=", "==", "!="];
 
 /// A number behind one of them.
-const NUMBER: [Part; 1] = [Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" })];
+const NUMBER: [Part; 1] = [Part::bare("N", Kind::Whole)];
 
 impl Value for Numbers {
     const KIND: Kind = Kind::Or(
@@ -209,8 +209,8 @@ impl Value for Numbers {
                 word: "<>",
                 about: "",
                 parts: &[
-                    Part::Word(Placeholder { name: "A", kind: Kind::Whole, about: "", unit: "" }),
-                    Part::Word(Placeholder { name: "B", kind: Kind::Whole, about: "", unit: "" }),
+                    Part::bare("A", Kind::Whole),
+                    Part::bare("B", Kind::Whole),
                 ],
             },
         ]),

@@ -4,7 +4,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::common::{not_here, setting};
-use perigrain_styles::words::{At, Grammar, Kind, OneType, Part, Placeholder, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, OneType, Part, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::{GroupId, NeighborSettings};
 
@@ -95,8 +95,8 @@ enum Exclude {
 /// How many lists or numbers, and these.
 const fn counted(name: &'static str, kind: Kind) -> [Part; 2] {
     [
-        Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
-        Part::Word(Placeholder { name, kind, about: "", unit: "" }),
+        Part::bare("N", Kind::Whole),
+        Part::bare(name, kind),
     ]
 }
 

@@ -9,7 +9,7 @@ use perigrain_geometry::rows::{Property, Rows, is_elsewhere, property};
 use perigrain_geometry::words::{Making, Options};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Syntax, Value, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
 
 /// The command.
@@ -67,8 +67,8 @@ impl Value for Columns {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[Part::Many(
             &[
-                Part::Word(Placeholder { name: "PROPERTY", kind: Kind::Text, about: "", unit: "" }),
-                Part::Word(Placeholder { name: "COLUMN", kind: Kind::Text, about: "", unit: "" }),
+                Part::bare("PROPERTY", Kind::Text),
+                Part::bare("COLUMN", Kind::Text),
             ],
             1,
         )],

@@ -4,7 +4,7 @@ use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Op;
-use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Syntax, Value, Words, read};
+use perigrain_styles::words::{Grammar, Kind, Part, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use std::path::PathBuf;
 
@@ -112,11 +112,11 @@ struct Groups;
 impl Value for Groups {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "n", kind: Kind::Whole, about: "", unit: "" }),
+            Part::bare("n", Kind::Whole),
             Part::Many(
                 &[
-                    Part::Word(Placeholder { name: "group", kind: Kind::Group, about: "", unit: "" }),
-                    Part::Word(Placeholder { name: "factor", kind: Kind::Number, about: "", unit: "" }),
+                    Part::bare("group", Kind::Group),
+                    Part::bare("factor", Kind::Number),
                 ],
                 1,
             ),

@@ -4,7 +4,7 @@ use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
 use perigrain_styles::common::unknown_style;
-use perigrain_styles::words::{Alternative, Kind, Part, Placeholder, Value};
+use perigrain_styles::words::{Alternative, Kind, Part, Value};
 use std::f64::consts::{PI, SQRT_2};
 
 /// The laws: their words, the formulas of their energies, and their parameters, of which the last is the cutoff.
@@ -31,15 +31,11 @@ pub fn numbers(name: &str) -> &'static [&'static str] {
     if name == "morse" { &["D0", "alpha", "r0"] } else { &["epsilon", "sigma"] }
 }
 
-const WELL: &[Part] = &[number("epsilon"), number("sigma"), number("cutoff")];
-const MORSE: &[Part] = &[number("D0"), number("alpha"), number("r0"), number("cutoff")];
+const WELL: &[Part] = &[Part::number("epsilon"), Part::number("sigma"), Part::number("cutoff")];
+const MORSE: &[Part] = &[Part::number("D0"), Part::number("alpha"), Part::number("r0"), Part::number("cutoff")];
 
 const fn law(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
     Alternative { word, about, parts }
-}
-
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
 }
 
 impl Value for Law {

@@ -2,7 +2,7 @@
 
 use super::newcomers::settle;
 use super::pair::ToCome;
-use super::words::{At, Grammar, Keyword, Kind, Part, Placeholder, Value, Words};
+use super::words::{At, Grammar, Keyword, Kind, Part, Value, Words};
 use super::{BuildCx, SealCx};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::body::{Quat, turn};
@@ -117,28 +117,24 @@ const fn keyword(word: &'static str, values: &'static [Part], about: &'static st
     Keyword { word, values, about, default: "", repeats: false }
 }
 
-const fn place(name: &'static str, kind: Kind) -> Part {
-    Part::Word(Placeholder { name, kind, about: "", unit: "" })
-}
-
 impl Words for Inserted {
     const GRAMMAR: &'static Grammar = &Grammar {
         parts: &[],
         keywords: &[
             keyword(
                 "mol",
-                &[place("TEMPLATE", Kind::Molecule)],
+                &[Part::bare("TEMPLATE", Kind::Molecule)],
                 "Copies of a molecule template with their bonds are put in, turned at random, in the place of single particles; `type` is \
                  added to their types (so 0 is one).",
             ),
             keyword(
                 "molfrac",
-                &[Part::Many(&[place("f", Kind::Number)], 1)],
+                &[Part::Many(&[Part::bare("f", Kind::Number)], 1)],
                 "The shares of the several molecules of a template, equal without it.",
             ),
             keyword(
                 "rigid",
-                &[place("fixID", Kind::Fix)],
+                &[Part::bare("fixID", Kind::Fix)],
                 "The fix rigid/small with the same `mol` that moves the molecules as bodies.",
             ),
         ],
@@ -174,7 +170,7 @@ pub struct Orient(Vec3);
 
 impl Value for Orient {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[place("x", Kind::Number), place("y", Kind::Number), place("z", Kind::Number)],
+        parts: &[Part::bare("x", Kind::Number), Part::bare("y", Kind::Number), Part::bare("z", Kind::Number)],
         keywords: &[],
         refused: &[],
     });

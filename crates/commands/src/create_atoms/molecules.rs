@@ -8,7 +8,7 @@ use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
 use perigrain_styles::common;
 use perigrain_styles::molecules::{self, any_turn, fits, named};
-use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
+use perigrain_styles::words::{Grammar, Kind, Part, Value};
 use perigrain_world::template::Numbering;
 use perigrain_world::{Template, World};
 use std::sync::Arc;
@@ -25,8 +25,8 @@ pub struct Copies {
 impl Value for Copies {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "ID", kind: Kind::Molecule, about: "", unit: "" }),
-            Part::Word(Placeholder { name: "SEED", kind: Kind::Whole, about: "", unit: "" }),
+            Part::bare("ID", Kind::Molecule),
+            Part::bare("SEED", Kind::Whole),
         ],
         ..*Grammar::NONE
     });

@@ -5,7 +5,7 @@ use super::more::molecule_id;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_geometry::text::{Line, number, whole};
 use perigrain_lang::Args;
-use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
+use perigrain_styles::words::{Grammar, Kind, Part, Value};
 use perigrain_styles::{BuildCx, Use, UseKind};
 use perigrain_world::index::Index;
 use perigrain_world::properties::MOLECULE;
@@ -34,9 +34,9 @@ pub struct Filled {
 impl Value for Section {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "ID", kind: Kind::Fix, about: "", unit: "" }),
-            Part::Word(Placeholder { name: "HEADER", kind: Kind::Text, about: "", unit: "" }),
-            Part::Word(Placeholder { name: "SECTION", kind: Kind::Text, about: "", unit: "" }),
+            Part::bare("ID", Kind::Fix),
+            Part::bare("HEADER", Kind::Text),
+            Part::bare("SECTION", Kind::Text),
         ],
         ..*Grammar::NONE
     });

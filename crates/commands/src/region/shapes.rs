@@ -5,7 +5,7 @@ use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::triangles::Placing;
-use perigrain_styles::words::{Alternative, At, Axis, Grammar, Kind, Part, Placeholder, Value, Words};
+use perigrain_styles::words::{Alternative, At, Axis, Grammar, Kind, Part, Value, Words};
 use perigrain_world::Region;
 use perigrain_world::region::{Given, INFINITE, Shape, Variable, across};
 
@@ -138,8 +138,8 @@ pub struct Parts(pub Vec<Region>);
 impl Value for Parts {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
-            Part::Many(&[Part::Word(Placeholder { name: "ID", kind: Kind::Region, about: "", unit: "" })], 2),
+            Part::bare("N", Kind::Whole),
+            Part::Many(&[Part::bare("ID", Kind::Region)], 2),
         ],
         ..*Grammar::NONE
     });

@@ -3,7 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Value, Words};
 use perigrain_world::{Respa, RunStyle};
 
 /// Forces that LAMMPS orders: none may act in shorter steps than the one before.
@@ -73,8 +73,8 @@ struct Levels(Vec<i64>);
 impl Value for Levels {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
-            Part::Many(&[Part::Word(Placeholder { name: "n", kind: Kind::Whole, about: "", unit: "" })], 0),
+            Part::bare("N", Kind::Whole),
+            Part::Many(&[Part::bare("n", Kind::Whole)], 0),
         ],
         ..*Grammar::NONE
     });

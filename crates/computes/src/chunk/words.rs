@@ -3,7 +3,7 @@
 use super::bins::{self, Origin, Shells};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
-use perigrain_styles::words::{At, Axis, Grammar, Kind, Or, Part, Placeholder, Value, Words, read};
+use perigrain_styles::words::{At, Axis, Grammar, Kind, Or, Part, Value, Words, read};
 use perigrain_styles::{Bins, BuildCx, Wants};
 use perigrain_world::{Face, GroupId, Key, Region};
 
@@ -103,8 +103,8 @@ enum Most {
 impl Value for Limit {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
-            Part::Maybe(&[Part::Word(Placeholder { name: "kind", kind: Most::KIND, about: "", unit: "" })]),
+            Part::bare("N", Kind::Whole),
+            Part::Maybe(&[Part::bare("kind", Most::KIND)]),
         ],
         keywords: &[],
         refused: &[],

@@ -4,7 +4,7 @@ use super::variable;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
-use perigrain_styles::words::{Grammar, Kind, Part, Placeholder, Value};
+use perigrain_styles::words::{Grammar, Kind, Part, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{MEMO, SLOTS};
@@ -24,20 +24,16 @@ pub struct OfPairs(pub Follows);
 /// `STYLE PARAMETER I v_name`.
 pub struct OfBonds(pub Follows);
 
-const fn word(name: &'static str, kind: Kind) -> Part {
-    Part::Word(Placeholder { name, kind, about: "", unit: "" })
-}
-
 /// The variable that is followed.
-pub const VARIABLE: Part = word("v_name", Kind::Reference);
+pub const VARIABLE: Part = Part::bare("v_name", Kind::Reference);
 
 impl Value for OfPairs {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            word("STYLE", Kind::Text),
-            word("COEFFICIENT", Kind::Text),
-            word("I", Kind::Types),
-            word("J", Kind::Types),
+            Part::bare("STYLE", Kind::Text),
+            Part::bare("COEFFICIENT", Kind::Text),
+            Part::bare("I", Kind::Types),
+            Part::bare("J", Kind::Types),
             VARIABLE,
         ],
         keywords: &[],
@@ -51,9 +47,9 @@ impl Value for OfPairs {
 impl Value for OfBonds {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            word("STYLE", Kind::Text),
-            word("COEFFICIENT", Kind::Text),
-            word("I", Kind::Types),
+            Part::bare("STYLE", Kind::Text),
+            Part::bare("COEFFICIENT", Kind::Text),
+            Part::bare("I", Kind::Types),
             VARIABLE,
         ],
         keywords: &[],

@@ -11,7 +11,7 @@ use perigrain_plan::Op;
 use perigrain_styles::molecules::{Inserted, Molecules, Offset};
 use perigrain_styles::newcomers::{Account, Ids};
 use perigrain_styles::pair::ToCome;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Seed, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Seed, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, Pull, SealCx, Shape, Style};
 use perigrain_world::{GroupId, Key, Numbers, World};
 use rain::Rain;
@@ -112,13 +112,9 @@ impl Value for Tries {
 /// Bounds of the velocities across, and the vertical velocity with its place.
 struct Drift([[f64; 2]; 2], f64, Span);
 
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
-}
-
 impl Value for Drift {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[number("vxlo"), number("vxhi"), number("vylo"), number("vyhi"), number("vz")],
+        parts: &[Part::number("vxlo"), Part::number("vxhi"), Part::number("vylo"), Part::number("vyhi"), Part::number("vz")],
         keywords: &[],
         refused: &[],
     });

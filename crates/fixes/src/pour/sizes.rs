@@ -4,7 +4,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_lang::Args;
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Value, Words};
 use std::f64::consts::PI;
 
 /// Diameters of the spheres.
@@ -25,15 +25,11 @@ pub enum Diameters {
 /// Radii with their shares of the number.
 pub struct Shares(Vec<[f64; 2]>);
 
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
-}
-
 impl Value for Shares {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "n", kind: Kind::Whole, about: "", unit: "" }),
-            Part::Many(&[number("D"), number("P")], 1),
+            Part::bare("n", Kind::Whole),
+            Part::Many(&[Part::number("D"), Part::number("P")], 1),
         ],
         keywords: &[],
         refused: &[],

@@ -6,7 +6,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::common::range_from;
 use perigrain_styles::molecules::named;
-use perigrain_styles::words::{At, Grammar, Kind, Part, Placeholder, Value, Words};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Value, Words};
 use perigrain_world::{GroupId, Numbers, Template};
 
 /// The words of fix rigid and fix rigid/nve.
@@ -113,9 +113,9 @@ pub struct Groups(pub Vec<GroupId>);
 impl Value for Groups {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "N", kind: Kind::Whole, about: "", unit: "" }),
+            Part::bare("N", Kind::Whole),
             Part::Many(
-                &[Part::Word(Placeholder { name: "group", kind: Kind::Group, about: "", unit: "" })],
+                &[Part::bare("group", Kind::Group)],
                 1,
             ),
         ],

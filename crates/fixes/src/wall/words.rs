@@ -34,7 +34,7 @@ pub const FORCE: Kind = Kind::Choice(&[
         "granular",
         "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
         &[Part::Many(
-            &[Part::Word(Placeholder { name: "MODELS", kind: Kind::Text, about: "", unit: "" })],
+            &[Part::bare("MODELS", Kind::Text)],
             1,
         )],
     ),

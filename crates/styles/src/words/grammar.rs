@@ -41,6 +41,10 @@ pub enum Kind {
     Attribute,
     /// A variable with its `v_`.
     Reference,
+    /// A column of the step table: a keyword or a value.
+    Column,
+    /// A style that this command takes.
+    Style(&'static str),
     /// One of several words, each with words of its own behind it.
     Choice(&'static [Alternative]),
     /// The same, of which syntax lines show the name of the place.
@@ -257,7 +261,8 @@ impl Grammar {
         let mut all: Vec<(String, &Keyword)> = vec![];
         for keyword in self.every() {
             let same = |other: &Keyword| {
-                !other.values.is_empty() && Keyword { word: keyword.word, ..*other } == *keyword
+                let described = !(other.values.is_empty() && other.about.is_empty());
+                described && Keyword { word: keyword.word, ..*other } == *keyword
             };
             match all.last_mut() {
                 Some((names, last)) if same(last) => *names = format!("{names}|{}", keyword.word),
@@ -375,6 +380,16 @@ impl Keyword {
 }
 
 impl Part {
+    /// A word without a sentence about it.
+    pub const fn bare(name: &'static str, kind: Kind) -> Self {
+        Self::Word(Placeholder { name, kind, about: "", unit: "" })
+    }
+
+    /// A number without a sentence about it.
+    pub const fn number(name: &'static str) -> Self {
+        Self::bare(name, Kind::Number)
+    }
+
     /// As it stands in a syntax line.
     pub fn shown(&self) -> String {
         let all = |parts: &[Part]| parts.iter().map(Part::shown).collect::<Vec<_>>().join(" ");
@@ -456,6 +471,10 @@ impl Placeholder {
             }
             Kind::Choice(all) => all.iter().map(Alternative::shown).collect::<Vec<_>>().join(" | "),
             Kind::OrNull(_) => format!("{}|NULL", self.name),
+            // A variable in place of a number: `N|v_name`.
+            Kind::Or(Kind::Reference, second) => {
+                format!("{}|v_name", Self { kind: *second, ..*self }.shown())
+            }
             Kind::Or(first, second) => {
                 let shown = [first, second].map(|kind| Self { kind: *kind, ..*self }.shown());
                 shown.join(if shown.iter().any(|s| s.contains(' ')) { " | " } else { "|" })

@@ -7,7 +7,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::{
-    At, Grammar, Keyword, Kind, OneType, Or, Part, Placeholder, Seed, Value, Words,
+    At, Grammar, Keyword, Kind, OneType, Or, Part, Seed, Value, Words,
 };
 
 /// Spheres in a region.
@@ -184,21 +184,16 @@ pub struct Mix {
     span: Span,
 }
 
-/// A number as a part of a mixture.
-const fn number(name: &'static str) -> Part {
-    Part::Word(Placeholder { name, kind: Kind::Number, about: "", unit: "" })
-}
-
 impl Value for Mix {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
-            Part::Word(Placeholder { name: "measure", kind: Measure::KIND, about: "", unit: "" }),
-            Part::Many(&[number("D"), number("P")], 2),
+            Part::bare("measure", Measure::KIND),
+            Part::Many(&[Part::number("D"), Part::number("P")], 2),
         ],
         keywords: &[Keyword {
             word: "types",
             values: &[Part::Many(
-                &[Part::Word(Placeholder { name: "T", kind: Kind::Types, about: "", unit: "" })],
+                &[Part::bare("T", Kind::Types)],
                 1,
             )],
             about: "",
