@@ -18,6 +18,8 @@ pub struct Attributes {
     pub default: Option<Expr>,
     pub shown: Option<String>,
     pub list: bool,
+    /// A keyword that stands there once.
+    pub once: bool,
     pub least: usize,
     pub positive: bool,
     pub non_negative: bool,
@@ -92,6 +94,7 @@ impl Attributes {
                 "with" => self.with = Some(meta.value()?.parse()?),
                 "kind" => self.kind = Some(meta.value()?.parse()?),
                 "list" => self.list = true,
+                "once" => self.once = true,
                 "positive" => self.positive = true,
                 "non_negative" => self.non_negative = true,
                 "flatten" => self.flatten = true,
@@ -157,7 +160,7 @@ pub fn imports() -> TokenStream {
         #[allow(unused_imports)]
         use ::perigrain_styles::words::{
             Alternative, Args, At, BuildCx, Form, Forms, Grammar, Keyword, Keywords, Kind, Part, Placeholder, Result,
-            Value, Whole, Word, Words, inner, lacking, nothing, one_of, read_or, style_of,
+            Value, Whole, Word, Words, inner, lacking, nothing, one_of, read_or, style_of, twice,
         };
     }
 }

@@ -11,6 +11,8 @@ use syn::{DataEnum, DeriveInput, Fields, Variant};
 struct Built {
     words: Vec<String>,
     abouts: Vec<String>,
+    /// Whether each time that a keyword stands there is shown.
+    repeats: Vec<bool>,
     parts: Vec<Vec<TokenStream>>,
     /// The expressions that read the words behind a variant's.
     reads: Vec<TokenStream>,
@@ -30,6 +32,7 @@ pub fn derive(input: &DeriveInput, data: &DataEnum) -> syn::Result<TokenStream> 
         let (parts, read) = fields(variant)?;
         built.words.push(word(&given, variant));
         built.abouts.push(given.about);
+        built.repeats.push(!given.once);
         built.parts.push(parts);
         built.reads.push(read);
     }
@@ -65,7 +68,7 @@ fn taken(own: &Attributes, words: &[String]) -> TokenStream {
 
 /// One of several words.
 fn choice(input: &DeriveInput, own: &Attributes, built: &Built) -> TokenStream {
-    let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
+    let (ident, Built { words, abouts, parts, reads, .. }) = (&input.ident, built);
     let (known, refused, taken) = (literals(words), literals(&own.refused), taken(own, words));
     quote! {
         impl Value for #ident {
@@ -88,14 +91,14 @@ fn choice(input: &DeriveInput, own: &Attributes, built: &Built) -> TokenStream {
 
 /// Keywords of a line, of which each counts.
 fn keywords(input: &DeriveInput, own: &Attributes, built: &Built) -> TokenStream {
-    let (ident, Built { words, abouts, parts, reads }) = (&input.ident, built);
+    let (ident, Built { words, abouts, repeats, parts, reads }) = (&input.ident, built);
     let refused = literals(&own.refused);
     quote! {
         impl Keywords for #ident {
             const GRAMMAR: &'static Grammar = &Grammar {
                 parts: &[],
                 keywords: &[#(Keyword {
-                    word: #words, values: &[#(#parts),*], about: #abouts, default: "", repeats: true
+                    word: #words, values: &[#(#parts),*], about: #abouts, default: "", repeats: #repeats
                 }),*],
                 refused: #refused,
             };

@@ -17,6 +17,7 @@
 //! | `default = 1.0` | the value of a keyword that is not there; without it `Default::default()` |
 //! | `shown = "none"` | what the manual shows as that default; `"required"` where the keyword must stand there |
 //! | `list` | the values of a keyword are all words up to the next keyword |
+//! | `once` | a keyword (an `Option` or a `Vec`) of which a second one is refused |
 //! | `least = 1` | how many of a list must be there |
 //! | `positive`, `non_negative`, `from = 1` | bounds of numbers |
 //! | `placed` | the place of an `At` is that of the keyword, of an `At` in it that of the value; a `flag` is an `Option<Span>` then |
@@ -28,7 +29,7 @@
 //! A struct may say `#[word(least = 1)]`: one of its keywords must be there. A default may look at the scene: `cx` is at hand.
 //!
 //! An enum says `#[word(what = "direction")]`, its variants `#[word("word")]` where the word is not the variant's name in small
-//! letters. Both may list words of LAMMPS that are refused by name: `#[word(refused = "gradient")]`.
+//! letters, and `#[word(once)]` where a keyword of an enum is shown and offered once. Both may list words of LAMMPS that are refused by name: `#[word(refused = "gradient")]`.
 //!
 //! | in `#[word(…)]` of an enum | meaning |
 //! |---|---|

@@ -73,9 +73,14 @@ impl Field {
         }
     }
 
+    /// Whether it holds several values.
+    pub fn is_list(&self) -> syn::Result<bool> {
+        Ok(matches!(shape(&self.ty)?, Shape::Many(_)))
+    }
+
     /// Whether each time that the keyword stands there counts.
     pub fn repeats(&self) -> syn::Result<bool> {
-        Ok(matches!(shape(&self.ty)?, Shape::Many(_)) && !self.given.list)
+        Ok(self.is_list()? && !self.given.list && !self.given.once)
     }
 
     fn of<'a>(

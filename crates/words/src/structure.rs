@@ -106,7 +106,11 @@ impl Built {
         };
         self.begin.push(quote!(let #ident: #ty = #default;));
         let value = field.read_value()?;
-        self.arms.push(match repeats {
+        if given.once {
+            let given = if field.is_list()? { quote!(!self.#ident.is_empty()) } else { quote!(self.#ident.is_some()) };
+            self.arms.push(quote!(#word if #given => return twice(word),));
+        }
+        self.arms.push(match field.is_list()? && !given.list {
             true => quote!(#word => self.#ident.push(#value),),
             false => quote!(#word => self.#ident = #value,),
         });

@@ -58,7 +58,7 @@ pub struct Normal {
 pub struct Correlated {
     #[word(name = "SEED", what = "the seed", from = 1)]
     seed: u64,
-    #[word(keyword = "correlated", name = "L", what = "the correlation length", positive, placed)]
+    #[word(keyword = "correlated", name = "L", what = "the correlation length", positive, placed, once)]
     length: Option<At<f64>>,
 }
 
@@ -173,6 +173,7 @@ mod tests {
             ("set group all peri/strength normal 0.4 1", "0.4"),
             ("set group all peri/stiffness normal 0.1 1 correlated 0", "0"),
             ("set group all peri/stiffness gauss", "gauss"),
+            ("set group all peri/strength normal 0.1 1 correlated 8 correlated 2", "correlated"),
         ] {
             assert_eq!(refused(&w, line).0, word, "{line}");
         }

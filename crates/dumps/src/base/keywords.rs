@@ -5,7 +5,7 @@ use crate::attribute::attribute;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::args::blame;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_styles::words::{Alternative, At, Kind, Or, Value, Words, alternatives};
+use perigrain_styles::words::{Alternative, At, Kind, Or, Reference, Value, Words, alternatives};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::{Key, Region};
 
@@ -43,10 +43,10 @@ pub struct Common {
     delay: Option<i64>,
     /// The interval in steps, or a variable that names the next step.
     #[word(keyword, name = "N", what = "the dump's interval", placed)]
-    every: Option<At<Or<Named, Interval>>>,
+    every: Option<At<Or<Reference, Interval>>>,
     /// Snapshots at multiples of a time, or a variable that names the next time when a run begins and after each snapshot.
     #[word(keyword = "every/time", name = "T", what = "the time between snapshots", placed)]
-    every_time: Option<At<Or<Named, Period>>>,
+    every_time: Option<At<Or<Reference, Period>>>,
     /// Without effect: one process writes one file; needs a `%` in the file name.
     #[word(keyword, name = "N", what = "the number of files or processes", from = 1, placed)]
     fileper: Option<At<i64>>,
@@ -67,7 +67,7 @@ pub struct Common {
     pad: Option<usize>,
     /// No snapshot while this variable is not zero.
     #[word(keyword, name = "v_name")]
-    skip: Option<Named>,
+    skip: Option<Reference>,
     /// Rows by id, in the order of storage, or by a column, with −N in descending order.
     #[word(keyword, name = "N", what = "`off`, `id` or a column")]
     sort: Option<At<Or<Order, Column>>>,
@@ -151,25 +151,6 @@ impl Value for Operator {
                 Err(d.help("use one of < <= > >= == !=").into())
             }
         }
-    }
-}
-
-/// `v_name` of a variable with a numeric value.
-struct Named(ValueRef);
-
-impl Value for Named {
-    const KIND: Kind = Kind::Reference;
-    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let word = args.expect("an equal-style variable, as `v_name`")?;
-        match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
-            Some(r) => cx.value(&r, false).map(|()| Self(r)),
-            None => {
-                Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into())
-            }
-        }
-    }
-    fn begins(word: &Word) -> bool {
-        word.text.starts_with("v_")
     }
 }
 
@@ -275,15 +256,15 @@ impl Common {
     /// The rhythm, of which the later of `every` and `every/time` decides.
     fn rhythm(&self) -> Option<Rhythm> {
         let later =
-            |t: &&At<Or<Named, Period>>| self.every.as_ref().is_none_or(|e| t.span.start > e.span.start);
+            |t: &&At<Or<Reference, Period>>| self.every.as_ref().is_none_or(|e| t.span.start > e.span.start);
         if let Some(time) = self.every_time.as_ref().filter(later) {
             return Some(match &time.value {
-                Or::Word(Named(r)) => Rhythm::NamedTime(r.clone()),
+                Or::Word(Reference(r)) => Rhythm::NamedTime(r.clone()),
                 Or::Else(Period(every)) => Rhythm::Time(*every),
             });
         }
         self.every.as_ref().map(|every| match &every.value {
-            Or::Word(Named(r)) => Rhythm::Named(r.clone()),
+            Or::Word(Reference(r)) => Rhythm::Named(r.clone()),
             Or::Else(_) => Rhythm::Steps,
         })
     }

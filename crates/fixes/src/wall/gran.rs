@@ -100,6 +100,7 @@ impl Value for Named {
 #[word(keywords)]
 enum Moving {
     /// The wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared.
+    #[word(once)]
     Wiggle {
         #[word(name = "x|y|z", what = "direction of the motion")]
         axis: At<Axis>,
@@ -109,6 +110,7 @@ enum Moving {
         period: f64,
     },
     /// The wall moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.
+    #[word(once)]
     Shear {
         #[word(name = "x|y|z", what = "direction of the motion")]
         axis: At<Axis>,

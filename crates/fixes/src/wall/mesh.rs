@@ -8,14 +8,14 @@ use crate::elapsed::Elapsed;
 use crate::{Fix, FixStyle};
 use moving::{Motion, Moving, Placed, Running};
 use perigrain_base::comm::rows;
-use perigrain_base::diag::{Code, Diagnostic, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
 use perigrain_contact::walls::{Wall, WallSweep};
 use perigrain_lang::{Args, Word};
 use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
 use perigrain_styles::triangles::{self, Placing};
-use perigrain_styles::words::{At, Syntax, Words, read};
+use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Key, Numbers, Outline, World};
 use std::sync::Arc;
@@ -65,8 +65,8 @@ struct Line {
     /// What is added to them then, in box units [length].
     #[word(keyword, name = "X Y Z", what = "{}", shown = "0 0 0")]
     shift: [f64; 3],
-    #[word(keyword = "move", placed)]
-    motions: Vec<At<Moving>>,
+    #[word(keyword = "move", once)]
+    motion: Option<Moving>,
     #[word(flatten)]
     rest: Rest,
 }
@@ -86,11 +86,8 @@ fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
 impl FixStyle for WallMesh {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/mesh")?;
-        let Line { force, wall: Solid::Mesh(file), scale, shift, mut motions, rest } = read(args, cx)?;
-        if let Some(second) = motions.get(1) {
-            return fail(Code::CONFLICT, second.span, "a wall has one motion");
-        }
-        let motion = motions.pop().map_or(Motion::Rest, |at| at.value.motion());
+        let Line { force, wall: Solid::Mesh(file), scale, shift, motion, rest } = read(args, cx)?;
+        let motion = motion.map_or(Motion::Rest, Moving::motion);
         let common = rest.common(force, motion.point().unwrap_or_default(), cx)?;
         let (mesh, numbers) = surface(&file, Placing { scale, shift }, cx)?;
         Ok(Box::new(Declared {

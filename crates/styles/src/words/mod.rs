@@ -13,7 +13,7 @@ pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
     At, AtomVariable, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, NonNegative, Nullable, OneType,
-    Or, PerAtom, Positive, Seed, Turned, Types, Units, Value, VelocityAxis, Whole,
+    Or, PerAtom, Positive, Reference, Seed, Steps, Turned, Types, Units, Value, VelocityAxis, Whole,
 };
 
 use crate::common::{choice_or_refuse, left_over, not_here, unknown_style};
@@ -114,6 +114,14 @@ pub fn one_in<T: Clone>(what: &str, args: &mut Args, rows: &[(&'static str, T)])
         Some((_, value)) => Ok(value.clone()),
         None => unreachable!("`choice` takes none but these words"),
     }
+}
+
+/// The refusal of a keyword that has been given before.
+///
+/// # Errors
+/// Always.
+pub fn twice<T>(word: &Word) -> Result<T> {
+    fail(Code::CONFLICT, word.span, format!("`{}` is given twice", word.text))
 }
 
 /// The refusal of a keyword where one of a list should stand.

@@ -5,7 +5,7 @@ use crate::BuildCx;
 use crate::common::{self, variable_param};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::body::{Quat, turn};
-use perigrain_lang::{Args, Param, ValueRef, Word};
+use perigrain_lang::{Args, Param, RefKind, ValueRef, Word, blame};
 use perigrain_world::{GroupId, Key, Region, World};
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -242,6 +242,37 @@ impl Value for GlobalValue {
     }
     fn begins(word: &Word) -> bool {
         ["c_", "f_", "v_"].iter().any(|p| word.text.starts_with(p))
+    }
+}
+
+/// `v_name` of a variable with a numeric value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference(pub ValueRef);
+
+impl Value for Reference {
+    const KIND: Kind = Kind::Reference;
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("an equal-style variable, as `v_name`")?;
+        match ValueRef::parse(&word.text, word.span)?.filter(|r| r.kind == RefKind::Variable) {
+            Some(r) => cx.value(&r, false).map(|()| Self(r)),
+            None => {
+                Err(blame(word, Code::BAD_VALUE, "this must be an equal-style variable, as `v_name`").into())
+            }
+        }
+    }
+    fn begins(word: &Word) -> bool {
+        word.text.starts_with("v_")
+    }
+}
+
+/// A number of steps, from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps(pub i64);
+
+impl Value for Steps {
+    const KIND: Kind = Kind::Whole;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.integer_from(0, what).map(Self)
     }
 }
 
