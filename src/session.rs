@@ -18,6 +18,7 @@ mod interactive;
 mod later;
 mod leveling;
 mod limits;
+pub mod lines;
 mod measuring;
 mod minimizing;
 mod options;

@@ -1,30 +1,33 @@
 //! `bond_style` and `bond_coeff`: lines that declare forces along bonds.
 
 use super::declaration::{Context, Declared, needs_box, style};
+use super::heads;
 use super::node::{BondNode, FixNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span};
 use perigrain_lang::Args;
 use perigrain_pairs::bond::{BROUGHT, BondForce};
 use perigrain_styles::Fix;
+use perigrain_styles::words::{Or, Types, inner};
 use perigrain_world::{GroupId, World};
 use std::collections::BTreeMap;
 
 /// `bond_style STYLE …`, `bond_style none`.
 pub fn bond_style(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    if args.eat("none") {
+    let head: heads::BondStyle = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let Or::Else(word) = head.style else {
         args.finish()?;
         graph.bond = None;
         w.bonds.coeffs = None;
         bring_along(graph, w, vec![], cx.span)?;
         w.touch();
         return Ok(Declared::default());
-    }
+    };
     if !w.particles.style.bonded {
         let text = format!("particles of atom_style {} have no bonds", w.particles.style.name());
         let d = Diagnostic::error(Code::CONFLICT, args.name_span(), text);
         return Err(d.help("`atom_style bond`, alone or in a hybrid, has them").into());
     }
-    let style = style(&graph.tables.bonds, "bond", args)?;
+    let style = style(&graph.tables.bonds, "bond", &word)?;
     let force = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     bring_along(graph, w, force.fixes(), cx.span)?;
@@ -93,7 +96,7 @@ pub fn bond_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
         let d = Diagnostic::error(Code::CONFLICT, args.here(), "there are no bond types");
         return Err(d.help("set the number: `create_box … bond/types N`").into());
     }
-    let (first, last) = args.type_range(w.bonds.types)?;
+    let heads::BondCoeff { types: Types(first, last) } = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
     let kinds: Vec<u16> = (first..=last).collect();
     let mut force = node.force.clone();
     force.coeff(&kinds, args, &cx.build(graph, w, "", GroupId::ALL))?;

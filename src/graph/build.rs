@@ -1,12 +1,15 @@
 //! Lines that declare become nodes: fixes, computes, thermo, and what stands in files of its own.
 
-use super::declaration::{Context, Declared, deletes, find, id_of, keep_line, needs_box, provides, style};
+use super::declaration::{Context, Declared, deletes, find, keep_line, needs_box, provides, style};
+use super::heads::{self, FixOptions, OfCompute, OfFix};
 use super::node::{ComputeNode, FixNode, Graph};
 use super::pair_modify::pair_modify;
 use super::{bonds, dumps, pairs};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::UseKind;
+use perigrain_styles::compute::modify;
+use perigrain_styles::words::{At, Words, inner, read};
 use perigrain_world::{GroupId, World};
 use std::cell::RefCell;
 
@@ -24,13 +27,13 @@ pub fn declare(graph: &mut Graph, w: &mut World, cmd: &Command, cx: &Context) ->
         "pair_modify" => pair_modify(graph, w, &mut args, cx),
         "peri_modify" => pairs::peri_modify(graph, w, &mut args, cx),
         "fix" => fix(graph, w, &mut args, cx),
-        "unfix" => unfix(graph, w, &mut args),
+        "unfix" => unfix(graph, w, &mut args, cx),
         "fix_modify" => fix_modify(graph, w, &mut args, cx),
         "compute" => compute(graph, w, &mut args, cx),
-        "uncompute" => uncompute(graph, w, &mut args),
+        "uncompute" => uncompute(graph, w, &mut args, cx),
         "compute_modify" => compute_modify(graph, w, &mut args, cx),
         "dump" => dumps::dump(graph, w, &mut args, cx),
-        "undump" => dumps::undump(graph, &mut args),
+        "undump" => dumps::undump(graph, w, &mut args, cx),
         "dump_modify" => dumps::dump_modify(graph, w, &mut args, cx),
         "thermo" | "thermo_style" | "thermo_modify" => {
             let mut thermo = graph.thermo.clone();
@@ -66,10 +69,10 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     if args.peek_at(2).is_none_or(|style| style.text != "property/atom") {
         needs_box(w, args)?;
     }
-    let (id, id_span) = id_of(args, "fix")?;
-    let group_word = args.expect("the fix's group")?;
-    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(&graph.tables.fixes, "fix", args)?;
+    let head: heads::Fix = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let (id, id_span) = (head.id.text.as_str(), head.id.span);
+    let At { value: group, span: group_span, .. } = head.group;
+    let style = style(&graph.tables.fixes, "fix", &head.style)?;
     let fix = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
     let node = FixNode {
@@ -99,7 +102,7 @@ fn fix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Resul
     if let Some(k) = old {
         if graph.fixes[k].group != group {
             let text = format!("fix `{id}` concerns another group than before");
-            let d = Diagnostic::warning(Code::SUSPICIOUS, group_word.span, text);
+            let d = Diagnostic::warning(Code::SUSPICIOUS, group_span, text);
             let d = d.label(graph.fixes[k].span, "replaces this one");
             cx.build(graph, w, id, group).note(d.help("choose another ID if both are meant"));
         }
@@ -137,10 +140,10 @@ fn find_compute(graph: &Graph, id: &str, span: Span) -> Result<usize> {
     find(graph.computes.iter().position(|f| f.id == id), known, "compute", id, span)
 }
 
-fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {
-    let (id, span) = id_of(args, "fix")?;
-    let k = find_fix(graph, id, span)?;
-    args.finish()?;
+fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let OfFix { id } = read(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_fix(graph, &id.text, id.span)?;
+    let id = &id.text;
     let fix = graph.fixes.remove(k).fix;
     fix.remove(w);
     fix.computes().iter().for_each(|(id, ..)| take_away(graph, w, id));
@@ -150,39 +153,40 @@ fn unfix(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> 
 }
 
 fn fix_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let (id, span) = id_of(args, "fix")?;
-    let k = find_fix(graph, id, span)?;
+    let OfFix { id } = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_fix(graph, &id.text, id.span)?;
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "fix_modify needs an option");
     }
     let mut fix = graph.fixes[k].fix.clone();
-    let (mut energy, mut level) = (graph.fixes[k].energy, graph.fixes[k].level);
-    while !args.is_empty() {
-        let word = args.here();
-        if fix.facts(w).has_level && args.eat("respa") {
-            let from_one = args.integer_from(0, "the level, from 1, or 0 for the outermost")?;
-            level = usize::try_from(from_one - 1).ok();
-            continue;
-        }
-        if !args.eat("energy") {
-            fix.modify(args, &cx.build(graph, w, id, graph.fixes[k].group))?;
-            continue;
-        }
-        energy = args.flag("energy")?;
-        if energy && !fix.facts(w).has_energy {
-            let text = format!("fix {} has no energy to add", graph.fixes[k].style);
-            return fail(Code::CONFLICT, word, text);
+    let build = cx.build(graph, w, &id.text, graph.fixes[k].group);
+    let mut options = FixOptions::begin(args, &build)?;
+    while let Some(word) = args.peek() {
+        let leveled = word.text != "respa" || fix.facts(w).has_level;
+        match FixOptions::GRAMMAR.has(&word.text) && leveled {
+            true => drop(args.next().map(|word| options.keyword(word, args, &build)).transpose()?),
+            false => fix.modify(args, &build)?,
         }
     }
-    graph.fixes[k].fix = fix;
-    (graph.fixes[k].energy, graph.fixes[k].level) = (energy, level);
+    let node = &mut graph.fixes[k];
+    if let Some(At { value: yes, span, .. }) = options.energy {
+        if yes && !fix.facts(w).has_energy {
+            return fail(Code::CONFLICT, span, format!("fix {} has no energy to add", node.style));
+        }
+        node.energy = yes;
+    }
+    if let Some(from_one) = options.respa {
+        node.level = usize::try_from(from_one - 1).ok();
+    }
+    node.fix = fix;
     w.touch();
     Ok(Declared::default())
 }
 
 fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     needs_box(w, args)?;
-    let (id, id_span) = id_of(args, "compute")?;
+    let head: heads::Compute = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let (id, id_span, group) = (head.id.text.as_str(), head.id.span, head.group.value);
     if let Some(old) = graph.find_compute(id) {
         return Err(Diagnostic::error(
             Code::DUPLICATE_NAME,
@@ -193,9 +197,7 @@ fn compute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> R
         .help(format!("put `uncompute {id}` before this line, or choose another ID"))
         .into());
     }
-    let group_word = args.expect("the compute's group")?;
-    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(&graph.tables.computes, "compute", args)?;
+    let style = style(&graph.tables.computes, "compute", &head.style)?;
     let compute = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
     w.inherit(&format!("compute {id}"), |w| compute.declare(w))?;
@@ -243,25 +245,24 @@ fn forget_values(w: &mut World, name: &str) {
     *w.slots.get_mut(slot) = perigrain_world::Slot { name: name.to_string(), ..Default::default() };
 }
 
-fn uncompute(graph: &mut Graph, w: &mut World, args: &mut Args) -> Result<Declared> {
-    let (id, span) = id_of(args, "compute")?;
-    let k = find_compute(graph, id, span)?;
-    args.finish()?;
+fn uncompute(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let OfCompute { id } = read(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_compute(graph, &id.text, id.span)?;
+    let id = &id.text;
     graph.computes.remove(k).compute.remove(w);
     w.slots.forget(&format!("c_{id}"));
     Ok(deletes(UseKind::Compute, id))
 }
 
 fn compute_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let (id, span) = id_of(args, "compute")?;
-    let k = find_compute(graph, id, span)?;
+    let OfCompute { id } = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_compute(graph, &id.text, id.span)?;
+    let id = &id.text;
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "compute_modify needs an option");
     }
     let mut compute = graph.computes[k].compute.clone();
-    while !args.is_empty() {
-        compute.modify(args, &cx.build(graph, w, id, GroupId::ALL))?;
-    }
+    modify(&mut *compute, args, &cx.build(graph, w, id, GroupId::ALL))?;
     graph.computes[k].compute = compute;
     forget_values(w, &format!("c_{id}"));
     Ok(Declared::default())

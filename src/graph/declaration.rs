@@ -2,7 +2,7 @@
 
 use super::node::{Graph, PairNode};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use perigrain_lang::{Args, Command};
+use perigrain_lang::{Args, Command, Word};
 use perigrain_styles::{BuildCx, Style, Use, UseKind, lammps};
 use perigrain_world::{DeclaredLine, GroupId, World};
 
@@ -10,8 +10,7 @@ use perigrain_world::{DeclaredLine, GroupId, World};
 ///
 /// # Errors
 /// An unknown style, with the nearest known one; one of LAMMPS with what does the same here.
-pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, args: &mut Args) -> Result<&'t S> {
-    let word = args.expect(&format!("a {kind} style"))?;
+pub fn style<'t, S: Style + ?Sized>(table: &[&'t S], kind: &str, word: &Word) -> Result<&'t S> {
     let name = lammps::plain(kind, &word.text);
     if let Some(s) = table.iter().find(|s| s.name() == name) {
         return Ok(s);
@@ -86,10 +85,10 @@ pub fn needs_box(w: &World, args: &Args) -> Result<()> {
 }
 
 /// The ID that a line gives to what it declares.
-pub(super) fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<(&'a str, Span)> {
+pub(super) fn id_of<'a>(args: &mut Args<'a>, what: &str) -> Result<&'a Word> {
     let word = args.expect(&format!("the {what}'s ID"))?;
     if word.unknown || word.text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
-        return Ok((&word.text, word.span));
+        return Ok(word);
     }
     let text = format!("the ID `{}` may only have letters, digits and underscores", word.text);
     fail(Code::BAD_VALUE, word.span, text)

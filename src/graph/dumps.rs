@@ -1,16 +1,13 @@
 //! `dump`, `undump`, `dump_modify`, `write_dump`: lines that declare snapshots.
 
 use super::declaration::{Context, Declared, deletes, find, needs_box, provides, style};
+use super::heads::{self, OfDump};
 use super::node::{DumpNode, Graph};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::Args;
 use perigrain_styles::UseKind;
+use perigrain_styles::words::{inner, read};
 use perigrain_world::{GroupId, World};
-
-/// The ID of a dump: any word, for nothing but its own commands names it.
-fn id_of<'a>(args: &mut Args<'a>) -> Result<(&'a str, Span)> {
-    args.expect("the dump's ID").map(|word| (word.text.as_str(), word.span))
-}
 
 fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
     let known = graph.dumps.iter().map(|f| f.id.as_str()).collect();
@@ -20,17 +17,15 @@ fn find_dump(graph: &Graph, id: &str, span: Span) -> Result<usize> {
 /// `dump ID GROUP STYLE N FILE …`.
 pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
     needs_box(w, args)?;
-    let (id, id_span) = id_of(args)?;
+    let head: heads::Dump = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let (id, id_span, group, every) = (head.id.text.as_str(), head.id.span, head.group.value, head.every);
     if let Some(old) = graph.dumps.iter().find(|d| d.id == id) {
         return Err(Diagnostic::error(Code::DUPLICATE_NAME, id_span, format!("dump `{id}` exists already"))
             .label(old.span, "defined here")
             .help(format!("put `undump {id}` before this line, or choose another ID"))
             .into());
     }
-    let group_word = args.expect("the dump's group")?;
-    let group = cx.build(graph, w, id, GroupId::ALL).group(group_word)?;
-    let style = style(&graph.tables.dumps, "dump", args)?;
-    let every = args.integer_from(1, "the dump's interval")?;
+    let style = style(&graph.tables.dumps, "dump", &head.style)?;
     let file = args.peek().map_or(String::new(), |word| word.text.clone());
     let dump = style.build(args, &cx.build(graph, w, id, group))?;
     args.finish()?;
@@ -39,18 +34,18 @@ pub fn dump(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> 
 }
 
 /// `undump ID`.
-pub fn undump(graph: &mut Graph, args: &mut Args) -> Result<Declared> {
-    let (id, span) = id_of(args)?;
-    let k = find_dump(graph, id, span)?;
-    args.finish()?;
+pub fn undump(graph: &mut Graph, w: &World, args: &mut Args, cx: &Context) -> Result<Declared> {
+    let OfDump { id } = read(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_dump(graph, &id.text, id.span)?;
     graph.dumps.remove(k);
-    Ok(deletes(UseKind::Dump, id))
+    Ok(deletes(UseKind::Dump, &id.text))
 }
 
 /// `dump_modify ID …`.
 pub fn dump_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<Declared> {
-    let (id, span) = id_of(args)?;
-    let k = find_dump(graph, id, span)?;
+    let OfDump { id } = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let k = find_dump(graph, &id.text, id.span)?;
+    let id = &id.text;
     if args.is_empty() {
         return fail(Code::MISSING_ARGUMENT, args.here(), "dump_modify needs an option");
     }
@@ -75,14 +70,13 @@ pub fn once_dump(
     cx: &Context,
 ) -> Result<Box<dyn perigrain_styles::Dump>> {
     needs_box(w, args)?;
-    let group_word = args.expect("the group to write")?;
-    let group = cx.build(graph, w, "WRITE_DUMP", GroupId::ALL).group(group_word)?;
-    let style = style(&graph.tables.dumps, "dump", args)?;
-    let build = cx.build(graph, w, "WRITE_DUMP", group);
-    let mut line = args.until(|word| word == "modify");
+    let head: heads::WriteDump = inner(args, &cx.build(graph, w, "WRITE_DUMP", GroupId::ALL))?;
+    let style = style(&graph.tables.dumps, "dump", &head.style)?;
+    let build = cx.build(graph, w, "WRITE_DUMP", head.group.value);
+    let mut line = args.until(|word| heads::WRITE_DUMP.has(word));
     let mut dump = style.build(&mut line, &build)?;
     line.finish()?;
-    if args.eat("modify") {
+    if args.next().is_some() {
         dump.modify(args, &build)?;
     }
     args.finish()?;

@@ -5,6 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{add, same, sub};
 use perigrain_base::par;
 use perigrain_plan::{About, BlockSums, Level, Needs, Op, Room, Span as Rows, Stage, Tick, Way};
+use perigrain_styles::words::Words;
 use perigrain_world::bonds::LostBond;
 use perigrain_world::columns::HEATFLOW;
 use perigrain_world::field::{COLUMNS, F, FACTS, FAMILIES, Fields, TAG, TALLY, TORQUE, TRAVEL, X, X0};
@@ -20,7 +21,8 @@ pub struct Reneighbor {
 }
 
 /// What happens to particles beyond a fixed face (`thermo_modify lost`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+#[word(what = "value of lost")]
 pub enum Lost {
     /// The run ends.
     #[default]

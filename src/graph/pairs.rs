@@ -2,9 +2,11 @@
 
 use super::build::declare;
 use super::declaration::{Context, Declared, keep_line, needs_box, style};
+use super::heads;
 use super::node::{Graph, PairNode};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Command, Word};
+use perigrain_styles::words::{Or, Types, inner};
 use perigrain_world::{GroupId, World};
 
 /// `pair_style STYLE …`, `pair_style none`. The same style again keeps its coefficients, as in LAMMPS; a `hybrid` does not.
@@ -44,13 +46,14 @@ fn restate(graph: &mut Graph, w: &mut World, old: &PairNode, cx: &Context) -> Re
 }
 
 fn choose(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Context) -> Result<()> {
-    if args.eat("none") {
+    let head: heads::PairStyle = inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
+    let Or::Else(word) = head.style else {
         args.finish()?;
         graph.pair = None;
         w.touch();
         return Ok(());
-    }
-    let style = style(&graph.tables.pairs, "pair", args)?;
+    };
+    let style = style(&graph.tables.pairs, "pair", &word)?;
     let pair = style.build(args, &cx.build(graph, w, "", GroupId::ALL))?;
     let options = style.options();
     match args.peek() {
@@ -75,8 +78,8 @@ pub fn pair_coeff(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Contex
         .help("put a `pair_style` line first")
         .into());
     };
-    let (i0, i1) = args.type_range(w.types)?;
-    let (j0, j1) = args.type_range(w.types)?;
+    let heads::PairCoeff { first: Types(i0, i1), second: Types(j0, j1) } =
+        inner(args, &cx.build(graph, w, "", GroupId::ALL))?;
     let pairs: Vec<(u16, u16)> = (i0..=i1).flat_map(|i| (j0.max(i)..=j1).map(move |j| (i, j))).collect();
     if pairs.is_empty() {
         return Err(Diagnostic::error(Code::BAD_VALUE, cx.span, "these types name no pair i ≤ j")

@@ -2,10 +2,11 @@
 
 pub mod writing;
 
-use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_lang::{Args, ValueRef};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
+use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_output::file::Pattern;
 use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Kind, Or, Reference, Steps, Value, Words, read_or};
 use std::path::PathBuf;
 
 /// At which steps restart files are written.
@@ -15,6 +16,34 @@ pub enum Rhythm {
     Every(i64),
     /// At those that a variable names one after another.
     Named(ValueRef),
+}
+
+/// The words of a `restart` line.
+#[derive(Words)]
+pub struct RestartLine {
+    /// At which steps: multiples of `N`, or those that the variable names one after another, by `logfreq()`, `stride()` and the like;
+    /// 0 ends all files.
+    #[word(name = "N", what = "the interval of restart files")]
+    every: Or<Reference, Steps>,
+    /// A file for each step, with the step in place of `*` or behind `.` at the end; of two names, the first file.
+    #[word(name = "FILE")]
+    first: Option<RestartFile>,
+    /// The second of two files that are written in turn.
+    #[word(name = "FILE2")]
+    second: Option<RestartFile>,
+}
+
+/// The name of a file.
+struct RestartFile(Word);
+
+impl Value for RestartFile {
+    const KIND: Kind = Kind::File;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.expect(what).cloned().map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        divided(word).is_none()
+    }
 }
 
 /// Which restart files are wanted; both kinds may be.
@@ -34,38 +63,22 @@ impl Restarts {
     /// # Errors
     /// Every mistake in the line.
     pub fn declare(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let named = match args.peek() {
-            Some(word) if word.text.starts_with("v_") => ValueRef::parse(&word.text, word.span)?,
-            _ => None,
+        let RestartLine { every, first, second } = read_or(args, cx, divided)?;
+        let every = match every {
+            Or::Word(Reference(r)) => Rhythm::Named(r),
+            Or::Else(Steps(0)) => return self.end(first.iter().chain(&second)),
+            Or::Else(Steps(n)) => Rhythm::Every(n),
         };
-        let every = match named {
-            Some(r) => {
-                args.next();
-                cx.value(&r, false)?;
-                Rhythm::Named(r)
-            }
-            None => Rhythm::Every(args.integer_from(0, "the interval of restart files")?),
+        let Some(RestartFile(first)) = first else {
+            return args.expect("the name of the restart files").map(drop);
         };
-        if matches!(every, Rhythm::Every(0)) {
-            args.finish()?;
-            *self = Self::default();
-            return Ok(());
-        }
-        let first = args.expect("the name of the restart files")?;
         let name = pattern(&first.text).map_err(|e| e.at(first.span))?;
         let span = args.span();
-        match args.next() {
+        match second {
             None => *self = Self { each: Some((every, numbered(name)?)), span, ..self.clone() },
-            Some(word) if matches!(word.text.as_str(), "fileper" | "nfile") => {
-                return Err(one_process(word.span, &word.text));
-            }
-            Some(second) => {
-                if let Some(word) = args.peek().filter(|w| matches!(w.text.as_str(), "fileper" | "nfile")) {
-                    return Err(one_process(word.span, &word.text));
-                }
-                args.finish()?;
+            Some(RestartFile(second)) => {
                 pattern(&second.text).map_err(|e| e.at(second.span))?;
-                if let Some(word) = [first, second].into_iter().find(|w| w.text.contains('*')) {
+                if let Some(word) = [&first, &second].into_iter().find(|w| w.text.contains('*')) {
                     let text = "two files are written in turn: their names have no `*`";
                     return fail(Code::BAD_VALUE, word.span, text);
                 }
@@ -76,6 +89,16 @@ impl Restarts {
                 *self = Self { turn: Some((every, files)), span, ..self.clone() };
             }
         }
+        Ok(())
+    }
+
+    /// No further files: `restart 0` with nothing behind it.
+    fn end<'a>(&mut self, mut files: impl Iterator<Item = &'a RestartFile>) -> Result<()> {
+        if let Some(RestartFile(word)) = files.next() {
+            let text = format!("`restart` does not expect `{}` here", word.text);
+            return fail(Code::EXTRA_ARGUMENT, word.span, text);
+        }
+        *self = Self::default();
         Ok(())
     }
 
@@ -101,7 +124,10 @@ fn numbered(name: Pattern) -> Result<Pattern> {
 }
 
 /// The refusal of a keyword about files of several processes.
-pub fn one_process(span: Span, word: &str) -> perigrain_base::diag::Diagnostics {
-    let text = format!("`{word}` divides a restart file among processors: one process writes it here");
-    Diagnostic::error(Code::NOT_SUPPORTED, span, text).help("leave it out").into()
+pub fn divided(word: &Word) -> Option<Diagnostics> {
+    if !["fileper", "nfile"].contains(&word.text.as_str()) {
+        return None;
+    }
+    let text = format!("`{}` divides a restart file among processors: one process writes it here", word.text);
+    Some(Diagnostic::error(Code::NOT_SUPPORTED, word.span, text).help("leave it out").into())
 }

@@ -1,19 +1,23 @@
 //! The step table: which columns, when, and the op that prints a row.
 
 mod printing;
+pub mod words;
 
 use super::keywords;
 use super::ops::Lost;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
-use perigrain_lang::{Args, RefKind, ValueRef, Word};
+use perigrain_lang::{Args, ValueRef, Word};
 use perigrain_output::thermo::{Column, Layout, Line};
+use perigrain_styles::words::{Forms, Given, Or, Reference, Steps, Words, read};
 use perigrain_styles::{BuildCx, Wants};
 use perigrain_world::World;
 use perigrain_world::bonds::LostBond;
 use std::collections::BTreeSet;
+use words::{Interval, Modify, Style};
 
 /// What becomes of a run whose energy has grown beyond reason (`thermo_modify energy`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+#[word(what = "value of energy")]
 pub enum Runaway {
     /// It ends with an error.
     Error,
@@ -107,19 +111,14 @@ impl Thermo {
     /// # Errors
     /// Anything but a whole number from 0 or an equal-style variable.
     pub fn interval(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let named = match args.peek() {
-            Some(word) if word.text.starts_with("v_") => ValueRef::parse(&word.text, word.span)?,
-            _ => None,
-        };
-        match &named {
-            Some(r) => {
-                args.next();
-                cx.value(r, false)?;
+        self.named = match read::<Interval>(args, cx)?.every {
+            Or::Word(Reference(r)) => Some(r),
+            Or::Else(Steps(n)) => {
+                self.every = n;
+                None
             }
-            None => self.every = args.integer_from(0, "the interval of thermo output")?,
-        }
-        self.named = named;
-        args.finish()
+        };
+        Ok(())
     }
 
     /// `thermo_style style …`; formats given before are reset, as in LAMMPS.
@@ -127,18 +126,14 @@ impl Thermo {
     /// # Errors
     /// Unknown styles and columns.
     pub fn style(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let style = args.choice("thermo style", &["one", "multi", "yaml", "custom"])?;
-        let (layout, sources) = match style {
-            "custom" => columns(args.rest(), cx)?,
-            _ => {
-                args.finish()?;
-                let layout = match style {
-                    "multi" => Layout::multi(),
-                    "yaml" => Layout::yaml(),
-                    _ => Layout::one(),
-                };
-                let sources = sources_of(&layout);
-                (layout, sources)
+        let built_in = |layout: Layout| (sources_of(&layout), layout, true);
+        let (sources, layout, built_in) = match Style::form(args, cx)? {
+            Style::One => built_in(Layout::one()),
+            Style::Multi => built_in(Layout::multi()),
+            Style::Yaml => built_in(Layout::yaml()),
+            Style::Custom(custom) => {
+                let (layout, sources) = columns(&custom.columns, cx)?;
+                (sources, layout, false)
             }
         };
         let Self { every, named, modified, mut forgotten, .. } = std::mem::take(self);
@@ -148,7 +143,7 @@ impl Thermo {
         }
         self.forgotten = forgotten;
         (self.every, self.named, self.layout, self.sources) = (every, named, layout, sources);
-        self.built_in = style != "custom";
+        self.built_in = built_in;
         Ok(())
     }
 
@@ -181,143 +176,15 @@ impl Thermo {
     /// # Errors
     /// Unknown keywords and formats that do not fit.
     pub fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        const KNOWN: [&str; 11] = [
-            "lost",
-            "lost/bond",
-            "energy",
-            "warn",
-            "norm",
-            "flush",
-            "line",
-            "colname",
-            "format",
-            "temp",
-            "press",
-        ];
         if args.is_empty() {
             return fail(Code::MISSING_ARGUMENT, args.here(), "thermo_modify needs a keyword");
         }
-        while let Some(word) = args.next() {
+        for Given { word, value, .. } in read::<Modify>(args, cx)?.settings.0 {
             self.modified.insert(word.text.clone());
             self.forgotten.1.remove(&word.text);
-            match word.text.as_str() {
-                "norm" => self.norm = Some(args.flag("norm")?),
-                "flush" => self.layout.flush = args.flag("flush")?,
-                "line" => {
-                    self.layout.line = match args.choice("line style", &["one", "multi", "yaml"])? {
-                        "multi" => Line::Multi,
-                        "yaml" => Line::Yaml,
-                        _ => Line::One,
-                    }
-                }
-                "lost" => {
-                    self.lost = match args.choice("value of lost", &["error", "warn", "ignore"])? {
-                        "error" => Lost::Error,
-                        "warn" => Lost::Warn,
-                        _ => Lost::Ignore,
-                    }
-                }
-                "lost/bond" => {
-                    self.lost_bond = match args.choice("value of lost/bond", &["error", "warn", "ignore"])? {
-                        "error" => LostBond::Error,
-                        "warn" => LostBond::Warn,
-                        _ => LostBond::Ignore,
-                    }
-                }
-                "energy" => {
-                    self.runaway =
-                        Some(match args.choice("value of energy", &["error", "warn", "ignore"])? {
-                            "error" => Runaway::Error,
-                            "warn" => Runaway::Warn,
-                            _ => Runaway::Ignore,
-                        });
-                }
-                "warn" => {
-                    if !["ignore", "reset", "default", "always"].contains(&args.peek_text()) {
-                        args.integer_from(0, "the number of warnings (or ignore, reset, default, always)")?;
-                    } else {
-                        args.next();
-                    }
-                    no_effect(cx, word, "without effect: every warning is printed once here");
-                }
-                "triclinic/general" if args.flag("triclinic/general")? => {
-                    let text = "there are no general triclinic boxes in perigrain";
-                    return fail(Code::NOT_SUPPORTED, word.span, text);
-                }
-                "triclinic/general" => {}
-                "format" => self.format(args)?,
-                "colname" => match args.peek_text() {
-                    "default" => {
-                        args.next();
-                        self.layout.rename_default();
-                    }
-                    _ => {
-                        let which = args.expect("a column")?;
-                        let name = args.expect("the column's new name")?;
-                        self.layout.rename(&which.text, &name.text).map_err(|e| e.at(which.span))?;
-                    }
-                },
-                "temp" => {
-                    let r = existing(args, cx, "temp")?;
-                    self.temp = r.name.clone();
-                    self.new_temperature = Some(r);
-                }
-                "press" => {
-                    let r = existing(args, cx, "pressure")?;
-                    if cx.names.compute_style(&r.name).is_some_and(|style| style != "pressure") {
-                        let d = Diagnostic::error(
-                            Code::WRONG_KIND,
-                            r.span,
-                            format!("compute `{}` is no pressure", r.name),
-                        );
-                        return Err(d.help("name a `compute ID all pressure …`").into());
-                    }
-                    self.press = r.name;
-                    self.new_temperature = None;
-                }
-                _ => return Err(args.unknown(word, &KNOWN)),
-            }
+            self.set(value, &word, cx)?;
         }
         Ok(())
-    }
-
-    fn format(&mut self, args: &mut Args) -> Result<()> {
-        let which = args.expect("line, int, float, none or a column")?;
-        if which.text == "none" {
-            self.layout.format_none();
-            return Ok(());
-        }
-        let text = args.expect("a format such as %20.15g")?;
-        match which.text.as_str() {
-            "line" => self.layout.format_line(&text.text),
-            "int" => self.layout.format_int(&text.text),
-            "float" => self.layout.format_float(&text.text),
-            column => self.layout.format_column(column, &text.text),
-        }
-        .map_err(|e| e.at(text.span))
-    }
-}
-
-/// A note at a word that changes nothing here.
-fn no_effect(cx: &BuildCx, word: &Word, text: &str) {
-    cx.note(Diagnostic::note(Code::NO_EFFECT, word.span, text));
-}
-
-/// An existing compute.
-fn existing(args: &mut Args, cx: &BuildCx, what: &str) -> Result<ValueRef> {
-    let word = args.expect("the ID of a compute")?;
-    let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
-    cx.value(&r, false).map_err(|e| {
-        let mut e = e;
-        e.0.iter_mut()
-            .for_each(|d| d.help.push(format!("define it with `compute {} all {what} …`", word.text)));
-        e
-    })?;
-    match cx.names.compute(&r.name) {
-        Some(s) if s.vector != 6 => {
-            fail(Code::WRONG_KIND, word.span, format!("compute `{}` is no {what}", r.name))
-        }
-        _ => Ok(r),
     }
 }
 

@@ -107,9 +107,6 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         (":plot", _) => return (0, [of(What::Column, knowing::thermo()), values(known)].concat()),
         (":slice", 1) => return (0, [of(What::Attribute, ATTRIBUTES), values(known)].concat()),
         (":slice", 2) => return (0, of(What::Keyword, ["x", "y", "z"])),
-        ("thermo_style", k) if k > 1 && typed[1] == "custom" => {
-            return (0, [of(What::Column, knowing::thermo()), values(known)].concat());
-        }
         ("dump" | "dump_modify" | "write_dump", k) if k > 2 => match typed[k - 2..] {
             [_, "backcolor" | "backcolor2" | "boxcolor"] | ["acolor", _] => {
                 return (0, of(What::Colour, colour_names()));
@@ -199,6 +196,8 @@ impl Slot<'_> {
         match place.kind {
             Kind::File => self.files(),
             Kind::Value => (0, values(self.known)),
+            Kind::Column => (0, [of(What::Column, knowing::thermo()), values(self.known)].concat()),
+            Kind::Style(command) => (0, of(What::Style, knowing::styles(command))),
             Kind::Attribute => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
             Kind::Param | Kind::Reference => {
                 (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())

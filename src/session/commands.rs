@@ -5,15 +5,79 @@ use crate::graph::Role;
 use crate::graph::build::bring;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Result};
-use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, substitute_known};
+use perigrain_lang::{Args, Command, Kind, RefKind, Substituted, ValueRef, Vars, Word, substitute_known};
 use perigrain_output::log::Echo;
-use perigrain_styles::{Shape, Use, UseKind};
+use perigrain_styles::words::{self, Idle, Or, Words, alternatives, one_in};
+use perigrain_styles::{BuildCx, Shape, Use, UseKind};
 use perigrain_world::{Compat, GroupId, Promise};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The session's own commands and those of the cursor, for "did you mean".
 pub use crate::graph::catalogue::SESSION_COMMANDS as OWN;
+
+/// The words of a `print` line.
+#[derive(Words)]
+pub struct Print {
+    #[word(name = "\"text\"", what = "a text")]
+    text: Word,
+    /// The file that gets the line, written anew.
+    #[word(keyword, name = "NAME", what = "a file name", kind = words::Kind::File)]
+    file: Option<Word>,
+    /// The file to which the line is added.
+    #[word(keyword, name = "NAME", what = "a file name", kind = words::Kind::File)]
+    append: Option<Word>,
+    /// Whether the screen shows the line; the log has it anyway.
+    #[word(keyword, default = true)]
+    screen: bool,
+    /// Read for LAMMPS' decks, without effect.
+    #[word(keyword, name = "yes|no", what = "universe")]
+    universe: Option<Idle<bool>>,
+}
+
+/// The words of a `log` line.
+#[derive(Words)]
+pub struct Logging {
+    #[word(name = "FILE", what = "a file name or `none`", kind = words::Kind::Or(&NoLog::KIND, &words::Kind::File))]
+    file: Or<NoLog, Word>,
+    /// The file keeps what it holds.
+    #[word(flag)]
+    append: bool,
+}
+
+/// No log file.
+#[derive(Words)]
+#[word(what = "log file")]
+enum NoLog {
+    /// Ends logging.
+    None,
+}
+
+/// The word of an `echo` line.
+#[derive(Words)]
+pub struct Echoing {
+    #[word(name = "where", with = echo, kind = words::Kind::Choice(&alternatives(&Echo::NAMES)))]
+    echo: Echo,
+}
+
+fn echo(args: &mut Args, _: &BuildCx) -> Result<Echo> {
+    let word = args.expect("none, screen, log or both")?;
+    match Echo::parse(&word.text) {
+        Some(echo) => Ok(echo),
+        None => refuse(Code::BAD_VALUE, word.span, "echo takes none, screen, log or both"),
+    }
+}
+
+/// The word of a `compat` line.
+#[derive(Words)]
+pub struct Compatibility {
+    #[word(name = "mode", with = mode, kind = words::Kind::Choice(&alternatives(&Compat::NAMES)))]
+    mode: Compat,
+}
+
+fn mode(args: &mut Args, _: &BuildCx) -> Result<Compat> {
+    one_in("mode", args, &Compat::NAMES)
+}
 
 /// What each variable offers, by name.
 pub fn variable_kinds(vars: &Vars) -> BTreeMap<String, Shape> {
@@ -86,25 +150,16 @@ impl Session {
     pub(super) fn own_command(&mut self, cmd: &Command) -> Result<bool> {
         let mut args = Args::new(cmd);
         match cmd.name.text.as_str() {
-            "print" => self.print(&mut args)?,
-            "log" => self.log(&mut args)?,
-            "echo" => {
-                let word = args.expect("none, screen, log or both")?;
-                let Some(echo) = Echo::parse(&word.text) else {
-                    return refuse(Code::BAD_VALUE, word.span, "echo takes none, screen, log or both");
-                };
-                args.finish()?;
-                self.options.log.set_echo(echo);
-            }
+            "print" => self.print(self.read_line(cmd)?)?,
+            "log" => self.log(self.read_line(cmd)?)?,
+            "echo" => self.options.log.set_echo(self.read_line::<Echoing>(cmd)?.echo),
             "clear" => {
                 args.finish()?;
                 self.vars.clear_atomfiles();
                 self.reset_world();
             }
             "compat" => {
-                let mode = args.choice("mode", &Compat::NAMES.map(|n| n.0))?;
-                args.finish()?;
-                let compat = Compat::from_name(mode).unwrap_or_default();
+                let compat = self.read_line::<Compatibility>(cmd)?.mode;
                 self.options.compat = compat;
                 self.world.settings.compat = compat;
                 let lammps = self.world.settings.lammps();
@@ -113,9 +168,9 @@ impl Session {
             }
             "python" => self.python(&mut args, cmd.span)?,
             "shell" => self.shell(cmd)?,
-            "info" => self.info(&mut args)?,
-            "timer" => self.timer(&mut args)?,
-            "sweep" => self.sweep(&mut args, cmd.span)?,
+            "info" => self.info(self.read_line(cmd)?)?,
+            "timer" => self.timer(self.read_line(cmd)?)?,
+            "sweep" => self.sweep(self.read_line(cmd)?, cmd.span)?,
             _ if self.inert(cmd)? => {}
             _ => return Ok(false),
         }
@@ -123,55 +178,49 @@ impl Session {
         Ok(true)
     }
 
-    fn print(&mut self, args: &mut Args) -> Result<()> {
-        let word = args.expect("a text")?;
-        let (mut file, mut append, mut screen, mut universe) = (None, false, true, true);
-        while let Some(key) = args.next() {
-            match key.text.as_str() {
-                "file" | "append" => {
-                    append = key.text == "append";
-                    file = Some(args.expect("a file name")?);
-                }
-                "screen" => screen = args.flag("screen")?,
-                "universe" => universe = args.flag("universe")?,
-                _ => return Err(args.unknown(key, &["file", "append", "screen", "universe"])),
+    fn print(&mut self, line: Print) -> Result<()> {
+        let (word, appended) = (line.text, line.append.is_some());
+        let file = match (&line.file, &line.append) {
+            (Some(_), Some(second)) => {
+                let text = "a line is written to one file: `file` or `append`";
+                return refuse(Code::CONFLICT, second.span, text);
             }
-        }
-        let _ = universe;
+            (file, append) => file.as_ref().or(append.as_ref()),
+        };
         let mut env = DeckEnv { w: &mut self.world, graph: &self.graph };
         let Substituted { text, unknown } = substitute_known(&word.text, word.span, &self.vars, &mut env)?;
         if self.looking() {
             if let Some(name) = file {
                 let text = (!unknown && !word.unknown).then_some(text);
-                self.world.promised.print(&name.text, text, append);
+                self.world.promised.print(&name.text, text, appended);
             }
             return Ok(());
         }
-        match screen {
+        match line.screen {
             true => self.options.log.line(&text)?,
             false => self.options.log.to_log(&text)?,
         }
         if let Some(name) = file {
             use std::io::Write;
             let path = Path::new(&name.text);
-            let mut out = perigrain_output::file::open(path, append).map_err(|e| e.at(name.span))?;
+            let mut out = perigrain_output::file::open(path, appended).map_err(|e| e.at(name.span))?;
             let failed = writeln!(out, "{text}").and_then(|()| out.flush());
             failed.map_err(|e| perigrain_output::file::trouble("write", path, &e).at(name.span))?;
         }
         Ok(())
     }
 
-    fn log(&mut self, args: &mut Args) -> Result<()> {
-        let word = args.expect("a file name or `none`")?;
-        let append = args.eat("append");
-        args.finish()?;
-        if self.looking() {
-            self.world.promised.keep(&word.text, Promise::Unseen);
-            return Ok(());
-        }
-        match word.text.as_str() {
-            "none" => self.options.log.close(),
-            name => self.options.log.open(Path::new(name), append).map_err(|e| e.at(word.span)),
+    fn log(&mut self, Logging { file, append }: Logging) -> Result<()> {
+        match file {
+            Or::Word(NoLog::None) if self.looking() => Ok(()),
+            Or::Word(NoLog::None) => self.options.log.close(),
+            Or::Else(word) if self.looking() => {
+                self.world.promised.keep(&word.text, Promise::Unseen);
+                Ok(())
+            }
+            Or::Else(word) => {
+                self.options.log.open(Path::new(&word.text), append).map_err(|e| e.at(word.span))
+            }
         }
     }
 }

@@ -2,9 +2,95 @@
 
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_lang::{Args, Command, Script};
+use perigrain_lang::{Args, Command, Script, Word};
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Kind, Value, Words, alternatives, one_in};
 
-const PACKAGES: [&str; 5] = ["gpu", "intel", "kokkos", "omp", "opt"];
+/// The words of a `package` line.
+#[derive(Words)]
+pub struct Package {
+    #[word(name = "package")]
+    _package: Accelerator,
+    #[word(name = "word")]
+    _options: Vec<Word>,
+}
+
+/// LAMMPS' packages for accelerators.
+#[derive(Words)]
+#[word(what = "package")]
+enum Accelerator {
+    Gpu,
+    Intel,
+    Kokkos,
+    Omp,
+    Opt,
+}
+
+/// The words of a `suffix` line.
+#[derive(Words)]
+pub struct Suffix {
+    #[word(name = "suffix")]
+    _suffix: Suffixes,
+}
+
+/// No suffix, one, or two.
+#[derive(Words)]
+#[word(what = "suffix")]
+enum Suffixes {
+    Off,
+    On,
+    Hybrid(
+        #[word(name = "SUFFIX", what = "first suffix")] Variant,
+        #[word(name = "SUFFIX", what = "second suffix")] Variant,
+    ),
+    Gpu,
+    Intel,
+    Kk,
+    Omp,
+    Opt,
+}
+
+/// A suffix of LAMMPS' variants of styles.
+struct Variant;
+
+const VARIANTS: [(&str, ()); 5] = [("gpu", ()), ("intel", ()), ("kk", ()), ("omp", ()), ("opt", ())];
+
+impl Value for Variant {
+    const KIND: Kind = Kind::Choice(&alternatives(&VARIANTS));
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        one_in(what, args, &VARIANTS).map(|()| Self)
+    }
+}
+
+/// The word of a `comm_style` line.
+#[derive(Words)]
+pub struct CommStyle {
+    #[word(name = "style")]
+    style: Dividing,
+}
+
+/// How LAMMPS divides the box among processes.
+#[derive(PartialEq, Words)]
+#[word(what = "communication style")]
+enum Dividing {
+    Brick,
+    Tiled,
+}
+
+/// The words of a `partition` line.
+#[derive(Words)]
+pub struct Partition {
+    /// With `yes` the command is carried out in these partitions as if it stood alone and passed over in the others, with `no` the other way round.
+    #[word(name = "wanted", what = "whether these or the other partitions are meant")]
+    wanted: bool,
+    /// A number or a range: `*`, `*3`, `2*`, `2*3`.
+    #[word(name = "N", what = "the number of a partition")]
+    which: Word,
+    #[word(name = "command", what = "a command")]
+    command: Word,
+    #[word(name = "word")]
+    words: Vec<Word>,
+}
 
 impl Session {
     /// Handles a command that LAMMPS needs for its processes and accelerators; `false` if it is none.
@@ -12,10 +98,9 @@ impl Session {
     /// # Errors
     /// Every mistake in the line.
     pub(super) fn inert(&mut self, cmd: &Command) -> Result<bool> {
-        let mut args = Args::new(cmd);
         let why = match cmd.name.text.as_str() {
             "suffix" => {
-                suffix(&mut args)?;
+                self.read_line::<Suffix>(cmd)?;
                 "perigrain chooses its kernels itself"
             }
             "package" => {
@@ -23,18 +108,15 @@ impl Session {
                     let text = "`package` must come before the simulation box is defined";
                     return refuse(Code::WRONG_ORDER, cmd.span, text);
                 }
-                args.choice("package", &PACKAGES)?;
-                args.rest();
+                self.read_line::<Package>(cmd)?;
                 "perigrain chooses its kernels itself; threads are set by `-threads N`"
             }
             "comm_style" => {
-                let style = args.choice("communication style", &["brick", "tiled"])?;
-                args.finish()?;
-                self.world.settings.tiled = style == "tiled";
+                self.world.settings.tiled = self.read_line::<CommStyle>(cmd)?.style == Dividing::Tiled;
                 "the box is not divided among processes"
             }
             "balance" => {
-                balance(&mut args)?;
+                balance(&mut Args::new(cmd))?;
                 "the box is not divided among processes, and threads share the work by themselves"
             }
             _ => return Ok(false),
@@ -51,9 +133,7 @@ impl Session {
     /// # Errors
     /// A partition that does not exist, and what the command refuses.
     pub(super) fn partition(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
-        let mut args = Args::new(cmd);
-        let wanted = args.flag("whether these or the other partitions are meant")?;
-        let which = args.expect("the number of a partition")?;
+        let Partition { wanted, which, command: name, words } = self.read_line(cmd)?;
         let (own, of) = self.vars.partition();
         let Some((first, last)) = range(&which.text, of) else {
             let text = match of {
@@ -62,11 +142,9 @@ impl Session {
             };
             return refuse(Code::BAD_VALUE, which.span, text);
         };
-        let name = args.expect("a command")?.clone();
         if wanted != (first..=last).contains(&(own + 1)) {
             return Ok(None);
         }
-        let words = args.rest().to_vec();
         let text =
             std::iter::once(&name).chain(&words).map(|w| w.text.as_str()).collect::<Vec<_>>().join(" ");
         let span = words.last().map_or(name.span, |w| name.span.to(w.span));
@@ -85,16 +163,6 @@ fn range(word: &str, of: usize) -> Option<(usize, usize)> {
         None => (number(word, 0).filter(|n| *n > 0)?, number(word, 0)?),
     };
     (first <= last).then_some((first, last))
-}
-
-/// `off`, `on`, a package, or `hybrid` with two of them.
-fn suffix(args: &mut Args) -> Result<()> {
-    const KNOWN: [&str; 8] = ["off", "on", "hybrid", "gpu", "intel", "kk", "omp", "opt"];
-    if args.choice("suffix", &KNOWN)? == "hybrid" {
-        args.choice("first suffix", &KNOWN[3..])?;
-        args.choice("second suffix", &KNOWN[3..])?;
-    }
-    args.finish()
 }
 
 /// `balance thresh x|y|z uniform|FRACTIONS … | shift dims iterations stop | rcb`, then options.

@@ -4,35 +4,104 @@ use super::{Session, timer};
 use crate::graph::catalogue::{self, Tables};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Word};
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Alternative, Kind, Part, Value, Words};
 use std::fmt::Write;
 use std::path::Path;
 
-const CATEGORIES: [&str; 16] = [
-    "all",
-    "configuration",
-    "memory",
-    "communication",
-    "system",
-    "coeffs",
-    "groups",
-    "regions",
-    "computes",
-    "dumps",
-    "fixes",
-    "variables",
-    "time",
-    "styles",
-    "accelerator",
-    "fft",
+/// The categories, each with what it shows.
+const CATEGORIES: [(&str, &str); 16] = [
+    ("all", "Everything."),
+    ("configuration", "Version and system."),
+    ("memory", "How much memory is used."),
+    ("communication", "Processes and threads."),
+    ("system", "Units, atom style, particles, box, time step."),
+    ("coeffs", "Which pairs of types have coefficients."),
+    ("groups", "The groups."),
+    ("regions", "The regions."),
+    ("computes", "The computes."),
+    ("dumps", "The dumps."),
+    ("fixes", "The fixes."),
+    ("variables", "The variables."),
+    ("time", "The time since the session began."),
+    ("styles", "Which styles there are, of one kind or all."),
+    ("accelerator", "None here."),
+    ("fft", "None here."),
 ];
 
 const LINE: &str = "Info-Info-Info-Info-Info-Info-Info-Info-Info-Info-Info";
 
+/// The place of `styles` among them.
+const STYLES: usize = 13;
+
+/// The words of an `info` line.
+#[derive(Words)]
+pub struct Info {
+    #[word(name = "category", least = 1)]
+    wanted: Vec<Wanted>,
+}
+
+/// What a word of the line requests.
+enum Wanted {
+    Out(Target),
+    Category(&'static str),
+    Styles(&'static str),
+}
+
 /// Where the text goes.
-enum Target<'a> {
+#[derive(Words)]
+#[word(what = "target")]
+enum Target {
+    /// The screen alone.
     Screen,
+    /// The log file.
     Log,
-    File(&'a Word, bool),
+    /// The end of a file.
+    Append(#[word(name = "FILE", what = "a file name", kind = Kind::File)] Word),
+    /// A file of its own.
+    Overwrite(#[word(name = "FILE", what = "a file name", kind = Kind::File)] Word),
+}
+
+/// The kinds of styles that `styles` shows, as choices.
+const KINDS: [Alternative; catalogue::CATEGORIES.len() + 1] = {
+    let mut all = [Alternative { word: "all", about: "", parts: &[] }; catalogue::CATEGORIES.len() + 1];
+    let mut k = 0;
+    while k < catalogue::CATEGORIES.len() {
+        all[k].word = catalogue::CATEGORIES[k];
+        k += 1;
+    }
+    all
+};
+
+/// All words of a line, as choices.
+const WORDS: [Alternative; CATEGORIES.len() + 1] = {
+    const OUT: &[Part] = &[Part::bare("target", Target::KIND)];
+    const OF_STYLES: &[Part] = &[Part::Maybe(&[Part::bare("kind", Kind::Choice(&KINDS))])];
+    let out =
+        Alternative { word: "out", about: "Where the text goes; without it to the screen.", parts: OUT };
+    let mut all = [out; CATEGORIES.len() + 1];
+    let mut k = 0;
+    while k < CATEGORIES.len() {
+        let (word, about) = CATEGORIES[k];
+        let parts = if k == STYLES { OF_STYLES } else { &[] };
+        all[k] = Alternative { word, about, parts };
+        k += 1;
+    }
+    all
+};
+
+impl Value for Wanted {
+    const KIND: Kind = Kind::Choice(&WORDS);
+    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        let word = args.expect("a category such as system or variables")?;
+        if word.text == "out" {
+            return Target::value("target", args, cx).map(Self::Out);
+        }
+        Ok(match category(word)? {
+            "styles" => Self::Styles(styles(args)),
+            one => Self::Category(one),
+        })
+    }
 }
 
 impl Session {
@@ -40,33 +109,23 @@ impl Session {
     ///
     /// # Errors
     /// Unknown categories, files that cannot be written.
-    pub(super) fn info(&mut self, args: &mut Args) -> Result<()> {
+    pub(super) fn info(&mut self, line: Info) -> Result<()> {
         let mut text = format!("{LINE}\n");
         let mut target = Target::Screen;
-        args.clone().expect("a category such as system or variables")?;
-        while let Some(word) = args.next() {
-            if word.text == "out" {
-                target = match args.choice("target", &["screen", "log", "append", "overwrite"])? {
-                    "screen" => Target::Screen,
-                    "log" => Target::Log,
-                    how => Target::File(args.expect("a file name")?, how == "append"),
-                };
-                continue;
-            }
-            let category = category(word)?;
-            if category == "styles" {
-                let which = styles(args);
-                text += &list_of_styles(&self.graph.tables, which);
-                continue;
-            }
-            match category {
-                "all" => CATEGORIES[1..].iter().for_each(|c| text += &self.category(c)),
-                one => text += &self.category(one),
+        for wanted in line.wanted {
+            match wanted {
+                Wanted::Out(other) => target = other,
+                Wanted::Styles(which) => text += &list_of_styles(&self.graph.tables, which),
+                Wanted::Category("all") => {
+                    CATEGORIES[1..].iter().for_each(|(name, _)| text += &self.category(name));
+                }
+                Wanted::Category(one) => text += &self.category(one),
             }
         }
         let _ = write!(text, "{LINE}");
+        let append = matches!(target, Target::Append(_));
         if self.looking() {
-            if let Target::File(word, append) = target {
+            if let Target::Append(word) | Target::Overwrite(word) = target {
                 self.world.promised.print(&word.text, Some(text), append);
             }
             return Ok(());
@@ -74,7 +133,7 @@ impl Session {
         match target {
             Target::Screen => self.options.log.to_screen(&text),
             Target::Log => self.options.log.to_log(&text)?,
-            Target::File(word, append) => {
+            Target::Append(word) | Target::Overwrite(word) => {
                 use std::io::Write;
                 let path = Path::new(&word.text);
                 let mut out = perigrain_output::file::open(path, append).map_err(|e| e.at(word.span))?;
@@ -234,14 +293,16 @@ impl Session {
 
 /// The category a word names; as in LAMMPS its beginning is enough.
 fn category(word: &Word) -> Result<&'static str> {
-    if let Some(c) = CATEGORIES.iter().find(|c| !word.text.is_empty() && c.starts_with(word.text.as_str())) {
-        return Ok(c);
+    let mut names = CATEGORIES.iter().map(|(name, _)| *name);
+    if let Some(found) = names.find(|name| !word.text.is_empty() && name.starts_with(word.text.as_str())) {
+        return Ok(found);
     }
+    let names = CATEGORIES.map(|(name, _)| name);
     let text = format!("`{}` is no category of info", word.text);
     let d = Diagnostic::error(Code::UNKNOWN_KEYWORD, word.span, text);
-    Err(match perigrain_base::diag::nearest(&word.text, CATEGORIES) {
+    Err(match perigrain_base::diag::nearest(&word.text, names) {
         Some(n) => d.help(format!("did you mean `{n}`?")),
-        None => d.help(format!("out, or one of {}", CATEGORIES.join(" "))),
+        None => d.help(format!("out, or one of {}", names.join(" "))),
     }
     .into())
 }
@@ -249,10 +310,9 @@ fn category(word: &Word) -> Result<&'static str> {
 /// The category of styles that may follow.
 fn styles(args: &mut Args) -> &'static str {
     let next = args.peek_text();
-    let mut known = catalogue::CATEGORIES.into_iter().chain(["all"]);
-    let Some(found) = known.find(|s| *s == next) else { return "all" };
+    let Some(found) = KINDS.iter().find(|kind| kind.word == next) else { return "all" };
     args.next();
-    found
+    found.word
 }
 
 fn list_of_styles(tables: &Tables, which: &str) -> String {

@@ -6,24 +6,36 @@ use crate::graph::Role;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::{Format, Value, general};
 use perigrain_fixes::Minimizing;
-use perigrain_lang::{Args, Command};
+use perigrain_lang::Command;
 use perigrain_plan::explain;
 use perigrain_plan::run::minimize::{self, Goal, Stats, Stop};
 use perigrain_styles::matter::check_masses;
+use perigrain_styles::words::Words;
 use perigrain_world::minimizer::MinStyle;
 use perigrain_world::{Halt, NeighborSettings};
 use std::time::Instant;
 
+/// The words of a `minimize` line.
+#[derive(Words)]
+pub struct Minimize {
+    /// The part of the energy by which an iteration changes it at the end.
+    #[word(name = "ETOL", what = "the energy tolerance", non_negative)]
+    etol: f64,
+    /// The length of all forces together at the end [force; force density for peridynamic particles in LAMMPS' convention].
+    #[word(name = "FTOL", what = "the force tolerance", non_negative)]
+    ftol: f64,
+    /// How many iterations are made at most.
+    #[word(name = "MAXITER", what = "the most iterations", from = 0)]
+    iterations: i64,
+    /// How often forces are evaluated at most (`cg` and `sd` only, as in LAMMPS).
+    #[word(name = "MAXEVAL", what = "the most evaluations of forces", from = 0)]
+    evaluations: i64,
+}
+
 impl Session {
     pub(super) fn minimize(&mut self, cmd: &Command) -> Result<()> {
-        let mut args = Args::new(cmd);
-        let goal = Goal {
-            etol: args.non_negative("the energy tolerance")?,
-            ftol: args.non_negative("the force tolerance")?,
-            iterations: args.integer_from(0, "the most iterations")?,
-            evaluations: args.integer_from(0, "the most evaluations of forces")?,
-        };
-        args.finish()?;
+        let Minimize { etol, ftol, iterations, evaluations } = self.read_line(cmd)?;
+        let goal = Goal { etol, ftol, iterations, evaluations };
         self.steps_left(goal.iterations, 1, cmd.span)?;
         self.made = self.made.saturating_add(goal.iterations);
         self.thermo_computes();

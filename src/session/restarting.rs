@@ -6,12 +6,13 @@ use crate::graph::build::declare;
 use crate::graph::declaration::Context;
 use crate::graph::regions::place_all;
 use crate::graph::restarts::writing::{claimable, save};
-use crate::graph::restarts::{one_process, pattern};
+use crate::graph::restarts::{divided, pattern};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, unseen};
 use perigrain_base::gate;
 use perigrain_fixes::python_invoke::HOST;
-use perigrain_lang::{Args, Command, Word};
+use perigrain_lang::{Command, Word};
 use perigrain_output::restart::{Saved, fingerprint, read, resume};
+use perigrain_styles::words::Words;
 use perigrain_world::{DeclaredLine, Halt, Key, Numbers, Particles, Promise, Unseen, World};
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -20,18 +21,32 @@ use std::sync::Arc;
 /// Facts of a scene that a restart file settles.
 const SETTLES: [&str; 5] = ["particles", "volume", "density", "mass", "diameter"];
 
+/// The words of a `write_restart` line.
+#[derive(Words)]
+pub struct WriteRestart {
+    /// The file; `*` in its name becomes the step.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+}
+
+/// The words of a `read_restart` line.
+#[derive(Words)]
+pub struct ReadRestart {
+    /// The file; a `*` in its name stands for the latest step.
+    #[word(name = "FILE", what = "a file name", kind = Kind::File)]
+    file: Word,
+    /// Without effect: particles outside a periodic box are wrapped anyway.
+    #[word(flag, placed)]
+    remap: Option<Span>,
+}
+
 impl Session {
     pub(super) fn write_restart(&mut self, cmd: &Command) -> Result<()> {
-        let mut args = Args::new(cmd);
         if self.world.domain.is_none() {
             return refuse(Code::WRONG_ORDER, cmd.span, "there is nothing to write: no box has been defined");
         }
-        let word = args.expect("a file name")?;
+        let word = self.read_line_or::<WriteRestart>(cmd, divided)?.file;
         let name = pattern(&word.text).map_err(|e| e.at(word.span))?;
-        if let Some(key) = args.peek().filter(|w| matches!(w.text.as_str(), "fileper" | "nfile")) {
-            return Err(one_process(key.span, &key.text));
-        }
-        args.finish()?;
         self.record(cmd, Role::Act, None, vec![], vec![]);
         if self.looking() {
             self.promise_restart(name.text().to_string());
@@ -71,7 +86,6 @@ impl Session {
     }
 
     pub(super) fn read_restart(&mut self, cmd: &Command) -> Result<()> {
-        let mut args = Args::new(cmd);
         if self.world.domain.is_some() {
             return Err(Diagnostic::error(
                 Code::WRONG_ORDER,
@@ -81,16 +95,13 @@ impl Session {
             .help("put `clear` before this line")
             .into());
         }
-        let word = args.expect("a file name")?;
+        let ReadRestart { file: word, remap } = self.read_line(cmd)?;
+        let word = &word;
         pattern(&word.text).map_err(|e| e.at(word.span))?;
-        if let Some(key) = args.next() {
-            if key.text != "remap" {
-                return Err(args.unknown(key, &["remap"]));
-            }
+        if let Some(span) = remap {
             let text = "without effect: particles outside a periodic box are wrapped anyway";
-            self.notes.push(Diagnostic::note(Code::NO_EFFECT, key.span, text));
+            self.notes.push(Diagnostic::note(Code::NO_EFFECT, span, text));
         }
-        args.finish()?;
         let began = std::time::Instant::now();
         let (path, saved) = match self.promised(word)? {
             Some(saved) => (PathBuf::from(&word.text), saved),

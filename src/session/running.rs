@@ -21,6 +21,7 @@ use perigrain_pairs::{PLASTIC_GRAIN, TILES};
 use perigrain_plan::run::{Pace, verlet};
 use perigrain_plan::{OpClass, Stage, StepPlan, When, explain};
 use perigrain_styles::Reading;
+use perigrain_styles::words::{At, Words};
 use perigrain_world::{Halt, Promise};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -41,30 +42,56 @@ pub(super) enum Pass {
 }
 
 /// The words of a `run` line.
-struct RunArgs {
-    steps: i64,
+#[derive(Words)]
+pub struct Run {
+    /// The number of steps; 0 computes forces, energies and output of the present state.
+    #[word(name = "N")]
+    steps: At<i64>,
+    /// `N` is the step to arrive at.
+    #[word(flag)]
+    upto: bool,
+    /// The first step of ramps (`ramp()`, `fix setforce` with variables …) that several runs share.
+    #[word(keyword, name = "N1", what = "the first step of ramps", shown = "the run's first")]
     start: Option<i64>,
+    /// The last step of such ramps.
+    #[word(keyword, name = "N2", what = "the last step of ramps", shown = "the run's last")]
     stop: Option<i64>,
+    /// Read for LAMMPS' decks.
+    #[word(keyword, default = true)]
     pre: bool,
+    /// Whether tables of time and neighbours follow the run.
+    #[word(keyword, default = true)]
     post: bool,
-    every: Option<(i64, Vec<Word>)>,
+    /// Stops every `M` steps and carries out the commands, each in quotes; `NULL` stands for none.
+    #[word(keyword, name = "commands")]
+    every: Option<Every>,
+}
+
+/// Commands within a run.
+#[derive(Words)]
+struct Every {
+    #[word(name = "M", what = "the interval of commands", from = 1)]
+    interval: i64,
+    #[word(name = "\"command\"", what = "a command in quotes, or NULL", least = 1)]
+    commands: Vec<Word>,
 }
 
 impl Session {
     pub(super) fn run_command(&mut self, cmd: &Command) -> Result<()> {
-        let args = self.read_run(cmd)?;
+        let args: Run = self.read_line(cmd)?;
+        let steps = self.steps_of(&args, cmd.span)?;
         self.thermo_computes();
         self.complete_table();
         self.record(cmd, Role::Run, None, vec![], vec![]);
         self.ready(cmd.span)?;
-        self.check_run(cmd.span, args.steps > 0)?;
+        self.check_run(cmd.span, steps > 0)?;
         if self.checking() {
-            self.foresee(cmd, args.steps);
+            self.foresee(cmd, steps);
             self.promise_outputs();
             self.unsee(false);
             return Ok(());
         }
-        if args.steps > 0 && !self.unsure() {
+        if steps > 0 && !self.unsure() {
             self.check_resolution(cmd.span)?;
         }
         self.print_notes()?;
@@ -77,22 +104,24 @@ impl Session {
             return Ok(());
         }
         let c = &mut self.world.clock;
-        let last = c.step + args.steps;
+        let last = c.step + steps;
         c.start = args.start.unwrap_or(c.step);
         c.stop = args.stop.unwrap_or(last);
         let known = !depends_on_a_run(cmd);
         if !self.looking() {
             self.foretell();
-            self.watch.requested(args.steps);
+            self.watch.requested(steps);
         }
         match args.every {
-            None => self.leg(args.steps, args.pre, args.post, cmd.span),
-            Some((every, commands)) => {
-                let mut left = args.steps;
+            None => self.leg(steps, args.pre, args.post, cmd.span),
+            Some(Every { interval, commands }) => {
+                let commands =
+                    if commands.len() == 1 && commands[0].text == "NULL" { vec![] } else { commands };
+                let mut left = steps;
                 let (mut first, mut stretches) = (true, 0);
                 // A run of no steps is one stretch, too.
                 while left > 0 || first {
-                    let n = left.min(every);
+                    let n = left.min(interval);
                     left -= n;
                     // Runs of their own: `pre no` and `post no` leave out the setups and summaries in between.
                     self.leg(n, args.pre || first, args.post || left == 0, cmd.span)?;
@@ -122,7 +151,7 @@ impl Session {
         }
         if self.interrupted {
             let step = self.world.clock.step;
-            let made = args.steps - (last - step);
+            let made = steps - (last - step);
             self.graph
                 .lines
                 .amend(cmd.span, |text| format!("{text}  # stopped at step {step}, after {made}"));
@@ -130,38 +159,21 @@ impl Session {
         Ok(())
     }
 
-    fn read_run(&mut self, cmd: &Command) -> Result<RunArgs> {
-        let mut args = Args::new(cmd);
-        let span = args.here();
-        let mut steps = args.integer("the number of steps")?;
+    /// How many steps a `run` line makes.
+    ///
+    /// # Errors
+    /// A number of steps that cannot be made, ramps that do not enclose them.
+    fn steps_of(&mut self, line: &Run, whole: Span) -> Result<i64> {
+        let At { value: mut steps, span, .. } = line.steps;
         let unsure = self.world.unseen.step;
-        let mut out = RunArgs { steps, start: None, stop: None, pre: true, post: true, every: None };
-        while let Some(key) = args.next() {
-            match key.text.as_str() {
-                "upto" => {
-                    steps = steps.saturating_sub(self.world.clock.step);
-                    // A run before may have ended earlier than the step counted here.
-                    steps = if unsure { steps.max(0) } else { steps };
-                }
-                "start" => out.start = Some(args.integer("the first step of ramps")?),
-                "stop" => out.stop = Some(args.integer("the last step of ramps")?),
-                "pre" => out.pre = args.flag("pre")?,
-                "post" => out.post = args.flag("post")?,
-                "every" => {
-                    let n = args.integer_from(1, "the interval of commands")?;
-                    args.clone().expect("a command in quotes, or NULL")?;
-                    let words = args.rest();
-                    let commands =
-                        if words.len() == 1 && words[0].text == "NULL" { vec![] } else { words.to_vec() };
-                    out.every = Some((n, commands));
-                }
-                _ => return Err(args.unknown(key, &["upto", "start", "stop", "pre", "post", "every"])),
-            }
+        if line.upto {
+            steps = steps.saturating_sub(self.world.clock.step);
+            // A run before may have ended earlier than the step counted here.
+            steps = if unsure { steps.max(0) } else { steps };
         }
         if steps < 0 {
             return refuse(Code::BAD_VALUE, span, format!("a run cannot make {steps} steps"));
         }
-        out.steps = steps;
         self.steps_left(steps, self.world.settings.run_style.short_steps(), span)?;
         let first = self.world.clock.step;
         let Some(last) = first.checked_add(steps) else {
@@ -169,11 +181,11 @@ impl Session {
                 format!("step {first} and {steps} more are beyond the last step there is, {}", i64::MAX);
             return refuse(Code::TOO_LARGE, span, text);
         };
-        let encloses = out.start.is_none_or(|s| s <= first) && out.stop.is_none_or(|s| s >= last);
+        let encloses = line.start.is_none_or(|s| s <= first) && line.stop.is_none_or(|s| s >= last);
         if !encloses && !unsure {
-            return refuse(Code::BAD_VALUE, cmd.span, "start and stop must enclose the steps of this run");
+            return refuse(Code::BAD_VALUE, whole, "start and stop must enclose the steps of this run");
         }
-        Ok(out)
+        Ok(steps)
     }
 
     /// Refuses a run without box; fills masses of types in.

@@ -3,7 +3,8 @@
 use super::axes::{Axis, combined, zip};
 use super::{Session, commands, refuse};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
-use perigrain_lang::{Args, Word};
+use perigrain_lang::Word;
+use perigrain_styles::words::{Each, Words};
 use perigrain_world::reading::place;
 
 /// A deck's `sweep` line.
@@ -15,8 +16,36 @@ pub struct Swept {
     pub report: Vec<String>,
 }
 
-/// Words that begin a part of the line.
-const KEYS: [&str; 4] = ["each", "zip", "table", "report"];
+/// The words of a `sweep` line.
+#[derive(Words)]
+#[word(least = 1)]
+pub struct Sweep {
+    #[word(flatten)]
+    parts: Each<Listed>,
+}
+
+/// A part of the line.
+#[derive(Words)]
+#[word(keywords)]
+enum Listed {
+    /// A list of values for an index variable; several lists mean all combinations, the last one fastest. `a..b` and `a..b:step` are
+    /// whole numbers, `a:b:n` are n numbers evenly from a to b; anything else is a text.
+    Each {
+        #[word(name = "NAME", what = "a variable's name")]
+        name: Word,
+        #[word(name = "VALUE", what = "a value", least = 1)]
+        values: Vec<Word>,
+    },
+    /// Ties lists together that are equally long.
+    Zip(#[word(name = "NAME", least = 2, kind = Kind::Variable)] Vec<Word>),
+    /// A file with one run per line below a line with the variables' names, between commas or blanks.
+    Table(#[word(name = "FILE", what = "a file name", kind = Kind::File)] Word),
+    /// What each run reports at its end, in the words of formulas: `c_ID`, `f_ID[2]`, `v_NAME`, words of thermo output.
+    Report(
+        #[word(name = "WORD", what = "a word such as c_ID, v_name or pe", least = 1, kind = Kind::Column)]
+        Vec<Word>,
+    ),
+}
 
 impl Session {
     /// The deck's `sweep` line, if it has been reached.
@@ -28,8 +57,8 @@ impl Session {
     ///
     /// # Errors
     /// Lists that make no sense, a second line that differs.
-    pub(super) fn sweep(&mut self, args: &mut Args, span: Span) -> Result<()> {
-        let swept = self.read_sweep(args, span)?;
+    pub(super) fn sweep(&mut self, line: Sweep, span: Span) -> Result<()> {
+        let swept = self.axes_of(line, span)?;
         let rows = combined(&swept.axes).map_err(|e| e.at(span))?;
         if self.swept.as_ref().is_some_and(|before| *before != swept) {
             return refuse(Code::CONFLICT, span, "a deck has one `sweep` line");
@@ -55,25 +84,18 @@ impl Session {
         Ok(())
     }
 
-    fn read_sweep(&self, args: &mut Args, span: Span) -> Result<Swept> {
+    fn axes_of(&self, line: Sweep, span: Span) -> Result<Swept> {
         let mut swept = Swept::default();
         let mut zips = vec![];
-        args.clone().expect("each, zip, table or report")?;
-        while let Some(key) = args.next() {
-            match key.text.as_str() {
-                "each" => {
-                    let name = args.expect("a variable's name")?;
-                    args.clone().expect("a value")?;
-                    let (values, whole) = words(args);
-                    swept.axes.push(Axis::each(&name.text, &values).map_err(|e| e.at(name.span.to(whole)))?);
+        for part in line.parts.0 {
+            match part.value {
+                Listed::Each { name, values } => {
+                    let (values, whole) = texts(&values, name.span);
+                    swept.axes.push(Axis::each(&name.text, &values).map_err(|e| e.at(whole))?);
                 }
-                "zip" => zips.push(words(args)),
-                "report" => {
-                    args.clone().expect("a word such as c_ID, v_name or pe")?;
-                    swept.report.extend(words(args).0);
-                }
-                "table" => swept.axes.push(self.table(args.expect("a file name")?)?),
-                _ => return Err(args.unknown(key, &KEYS)),
+                Listed::Zip(names) => zips.push(texts(&names, part.span)),
+                Listed::Report(words) => swept.report.extend(texts(&words, part.span).0),
+                Listed::Table(file) => swept.axes.push(self.table(&file)?),
             }
         }
         for (names, span) in zips {
@@ -105,14 +127,8 @@ impl Session {
     }
 }
 
-/// The words up to the next key, and where they stand.
-fn words(args: &mut Args) -> (Vec<String>, Span) {
-    let mut out = vec![];
-    let mut span = args.here();
-    while let Some(word) = args.peek().filter(|w| !KEYS.contains(&w.text.as_str())) {
-        span = span.to(word.span);
-        out.push(word.text.clone());
-        args.next();
-    }
-    (out, span)
+/// The texts of words, and the place from another one to their last.
+fn texts(words: &[Word], from: Span) -> (Vec<String>, Span) {
+    let whole = words.last().map_or(from, |last| from.to(last.span));
+    (words.iter().map(|word| word.text.clone()).collect(), whole)
 }

@@ -3,6 +3,8 @@
 use super::{Session, refuse};
 use perigrain_base::diag::{Code, Result};
 use perigrain_lang::{Args, Word};
+use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Each, Kind, Value, Words};
 use std::time::{Duration, Instant};
 
 /// The settings of `timer`.
@@ -23,6 +25,53 @@ impl Timer {
     /// Whether runs end with tables of where the time went.
     pub fn tables(&self) -> bool {
         matches!(self.style, "normal" | "full")
+    }
+}
+
+/// The words of a `timer` line; of those that exclude each other the last one counts.
+#[derive(Words)]
+pub struct TimerLine {
+    #[word(flatten)]
+    settings: Each<Setting>,
+}
+
+/// A setting.
+#[derive(Words)]
+#[word(keywords)]
+enum Setting {
+    /// No tables follow a run.
+    #[word(once)]
+    Off,
+    /// No tables follow a run.
+    #[word(once)]
+    Loop,
+    /// Tables of time and neighbours follow a run.
+    #[word(once)]
+    Normal,
+    /// Tables of time and neighbours follow a run.
+    #[word(once)]
+    Full,
+    /// Read for LAMMPS' processes; there is one here.
+    #[word(once)]
+    Sync,
+    /// Read for LAMMPS' processes; there is one here.
+    #[word(once)]
+    Nosync,
+    /// The time after which runs end, counted from this line; `off` takes the limit back.
+    #[word(once)]
+    Timeout(#[word(name = "H:MM:SS|off")] TimeLimit),
+    /// Runs end at a step that is a multiple of it.
+    #[word(once)]
+    Every(#[word(name = "N", what = "the steps between two readings of the clock", from = 1)] i64),
+}
+
+/// A limit of time, or none.
+struct TimeLimit(Option<Duration>);
+
+impl Value for TimeLimit {
+    const KIND: Kind = Kind::Text;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        limit(args.expect("a time such as 2:00:00, or off")?).map(Self)
     }
 }
 
@@ -62,24 +111,19 @@ impl Session {
     ///
     /// # Errors
     /// Unknown words, limits that are no times.
-    pub(super) fn timer(&mut self, args: &mut Args) -> Result<()> {
-        const KNOWN: [&str; 8] = ["off", "loop", "normal", "full", "sync", "nosync", "timeout", "every"];
+    pub(super) fn timer(&mut self, line: TimerLine) -> Result<()> {
         let (mut timer, mut every) = (self.timer, self.world.settings.limit_every);
         let mut restart = false;
-        while let Some(word) = args.next() {
-            match KNOWN.iter().find(|k| **k == word.text) {
-                Some(&("sync" | "nosync")) => {
-                    timer.mode = if word.text == "sync" { "sync" } else { "nosync" }
-                }
-                Some(&"timeout") => {
-                    timer.limit = limit(args.expect("a time such as 2:00:00, or off")?)?;
-                    restart = true;
-                }
-                Some(&"every") => {
-                    every = args.integer_from(1, "the steps between two readings of the clock")?
-                }
-                Some(style) => timer.style = style,
-                None => return Err(args.unknown(word, &KNOWN)),
+        for given in line.settings.0 {
+            match given.value {
+                Setting::Off => timer.style = "off",
+                Setting::Loop => timer.style = "loop",
+                Setting::Normal => timer.style = "normal",
+                Setting::Full => timer.style = "full",
+                Setting::Sync => timer.mode = "sync",
+                Setting::Nosync => timer.mode = "nosync",
+                Setting::Timeout(TimeLimit(limit)) => (timer.limit, restart) = (limit, true),
+                Setting::Every(steps) => every = steps,
             }
         }
         self.timer = timer;

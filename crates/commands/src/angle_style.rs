@@ -4,7 +4,9 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_styles::common::{domain, setting};
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{
+    Alternative, Kind, Part, Syntax, Types, Value, Words, alternatives, inner, read,
+};
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::angles::AngleZero;
 
@@ -16,6 +18,55 @@ pub struct AngleCoeff;
 
 /// The styles.
 pub const ANGLE_STYLES: [&str; 1] = ["zero"];
+
+/// The word behind `zero`.
+const NOCOEFF: &str = "nocoeff";
+
+/// The words of `angle_style`.
+#[derive(Words)]
+struct Line {
+    #[word(name = "style")]
+    style: Chosen,
+}
+
+/// What the words choose.
+struct Chosen(Option<AngleZero>);
+
+impl Value for Chosen {
+    const KIND: Kind = Kind::Choice(&[
+        Alternative {
+            word: ANGLE_STYLES[0],
+            about: "Angles exert no forces; with `nocoeff` whatever stands in `angle_coeff` is taken.",
+            parts: &[Part::Maybe(&[Part::bare(NOCOEFF, Kind::Choice(&alternatives(&[(NOCOEFF, ())])))])],
+        },
+        Alternative { word: "none", about: "Takes the style back.", parts: &[] },
+    ]);
+    fn value(_: &str, a: &mut Args, cx: &BuildCx) -> Result<Self> {
+        chosen(a, cx).map(Self)
+    }
+}
+
+/// The first word of `angle_coeff`.
+#[derive(Words)]
+struct Coeff {
+    /// An angle type or a range such as `*` or `2*4`.
+    #[word(name = "T", with = angle_types, kind = Kind::Types)]
+    types: Types,
+}
+
+/// The words of `angle_coeff`.
+#[derive(Words)]
+struct CoeffLine {
+    #[word(flatten)]
+    coeff: Coeff,
+    /// An angle [degrees], which goes into data files and means nothing else.
+    #[word(name = "THETA", what = "the angle THETA")]
+    theta: Option<f64>,
+}
+
+fn angle_types(a: &mut Args, cx: &BuildCx) -> Result<Types> {
+    a.type_range(cx.world.bonds.angles.types).map(|(first, last)| Types(first, last))
+}
 
 const CHAIN: &str = "units lj\natom_style angle\nregion b block 0 5 0 4 0 4\n\
     create_box 1 b bond/types 1 angle/types 1 extra/bond/per/atom 2 extra/angle/per/atom 1\ncreate_atoms 1 single 1 1 1\ncreate_atoms 1 single 2 1 1\n\
@@ -29,11 +80,10 @@ impl Style for AngleStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("angle_style zero [nocoeff] | none"),
+            syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Says what angles between bonds do: nothing.",
             text: "Angles come from data files, molecule files and `create_bonds single/angle`; they are kept, counted (`angles`), written by `write_data` and \
-                   `write_restart`, and go when one of their bonds or particles goes. `zero` says that they are meant to exert no forces; with \
-                   `nocoeff` whatever stands in `angle_coeff` is taken. `none` forgets the style. Styles with forces are refused: bonds bend \
+                   `write_restart`, and go when one of their bonds or particles goes. Styles with forces are refused: bonds bend \
                    here by `bond_style bpm/rotational` or `bpm/beam`.",
             example: CHAIN,
         }
@@ -47,10 +97,9 @@ impl Style for AngleCoeff {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written("angle_coeff T [THETA]"),
+            syntax: Syntax::Behind(CoeffLine::GRAMMAR),
             summary: "Coefficients of angle types.",
-            text: "T is an angle type or a range such as `*` or `2*4`. THETA [degrees] goes into data files and means nothing else. Every angle type needs a \
-                   line when a run begins and an `angle_style` is in force.",
+            text: "Every angle type needs a line when a run begins and an `angle_style` is in force.",
             example: CHAIN,
         }
     }
@@ -58,23 +107,27 @@ impl Style for AngleCoeff {
 
 impl CommandStyle for AngleStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let style = cx.world.particles.style;
-        let word = a.expect("a style of angles")?;
-        let new = match lammps::plain("angle", &word.text) {
-            "none" => None,
-            "zero" if !style.angled => {
-                let text = format!("particles of atom_style {} have no angles", style.name());
-                let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
-                return Err(d.help("`atom_style angle`, alone or in a hybrid, has them").into());
-            }
-            "zero" => Some(AngleZero { any: a.eat("nocoeff"), ..AngleZero::default() }),
-            _ => return Err(lammps::unknown("angle", "angle_style", word, &["zero", "none"])),
-        };
+        let Chosen(new) = read::<Line>(a, cx)?.style;
         Ok(setting(move |cx| {
             cx.world.bonds.angles.style = new;
             cx.world.touch();
             Ok(())
         }))
+    }
+}
+
+fn chosen(a: &mut Args, cx: &BuildCx) -> Result<Option<AngleZero>> {
+    let style = cx.world.particles.style;
+    let word = a.expect("a style of angles")?;
+    match lammps::plain("angle", &word.text) {
+        "none" => Ok(None),
+        "zero" if !style.angled => {
+            let text = format!("particles of atom_style {} have no angles", style.name());
+            let d = Diagnostic::error(Code::CONFLICT, a.name_span(), text);
+            Err(d.help("`atom_style angle`, alone or in a hybrid, has them").into())
+        }
+        "zero" => Ok(Some(AngleZero { any: a.eat(NOCOEFF), ..AngleZero::default() })),
+        _ => Err(lammps::unknown("angle", "angle_style", word, &["zero", "none"])),
     }
 }
 
@@ -91,14 +144,13 @@ impl CommandStyle for AngleCoeff {
             let d = Diagnostic::error(Code::CONFLICT, a.here(), "there are no angle types");
             return Err(d.help("set the number: `create_box … angle/types N`").into());
         }
-        let (first, last) = a.type_range(angles.types)?;
-        let angle = match (any, a.is_empty()) {
-            (true, _) => {
-                a.rest();
-                0.0
-            }
-            (false, true) => 0.0,
-            (false, false) => a.number("the angle THETA")?,
+        let (Coeff { types: Types(first, last) }, angle) = if any {
+            let coeff = inner(a, cx)?;
+            a.rest();
+            (coeff, 0.0)
+        } else {
+            let CoeffLine { coeff, theta } = read(a, cx)?;
+            (coeff, theta.unwrap_or(0.0))
         };
         Ok(setting(move |cx| {
             let given = cx.world.bonds.angles.style.iter_mut();

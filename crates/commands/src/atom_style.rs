@@ -4,27 +4,90 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{before_box, setting};
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Alternative, Kind, Part, Syntax, Value, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, Style, lammps};
 use perigrain_world::AtomStyle;
 
 /// The command.
 pub struct AtomStyleCommand;
 
-/// The styles.
-pub const ATOM_STYLES: [&str; 11] = [
-    "atomic",
-    "sphere",
-    "peri",
-    "bond",
-    "angle",
-    "molecular",
-    "full",
-    "charge",
-    "dipole",
-    "bpm/sphere",
-    "hybrid",
+/// The styles of which a `hybrid` has several.
+const SINGLE: [Alternative; 10] = [
+    style("atomic", "Mass by type; the default."),
+    Alternative {
+        parts: &[Part::Maybe(&[Part::bare("flag", Kind::Choice(&alternatives(&FLAGS)))])],
+        ..style(
+            "sphere",
+            "Radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag 0 or 1 that LAMMPS needs for radii that change \
+             (`fix adapt`) is read and not needed.",
+        )
+    },
+    style("peri", "Volume, position at creation, own mass (in LAMMPS' convention its density)."),
+    style("bond", "Bonds, molecule IDs, mass by type."),
+    style(
+        "angle",
+        "What `bond` has, and angles between bonds, which are kept and exert nothing (`angle_style zero`).",
+    ),
+    style("molecular", "As `angle`."),
+    style("full", "What `molecular` and `charge` have."),
+    style("charge", "A charge, which `fix efield` pulls; charges exert no forces on each other."),
+    style(
+        "dipole",
+        "A charge and a dipole moment, which `fix efield` turns and `fix nve/sphere … update dipole` lets follow the spin \
+         (`hybrid sphere dipole`).",
+    ),
+    style("bpm/sphere", "Bonds, molecule IDs, and what `sphere` has."),
 ];
+
+/// LAMMPS' flag for radii that change during a run, which they always may here.
+const FLAGS: [(&str, ()); 2] = [("0", ()), ("1", ())];
+
+/// All styles.
+const ALL: [Alternative; SINGLE.len() + 1] = {
+    let hybrid = Alternative {
+        parts: &[Part::Many(&[Part::bare("STYLE", Kind::Choice(&SINGLE))], 1)],
+        ..style("hybrid", "What each of the styles behind it has; the mass is one column.")
+    };
+    let mut all = [hybrid; SINGLE.len() + 1];
+    let mut k = 0;
+    while k < SINGLE.len() {
+        all[k] = SINGLE[k];
+        k += 1;
+    }
+    all
+};
+
+const fn style(word: &'static str, about: &'static str) -> Alternative {
+    Alternative { word, about, parts: &[] }
+}
+
+/// The names of the styles.
+pub const ATOM_STYLES: [&str; ALL.len()] = {
+    let mut names = [""; ALL.len()];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = ALL[k].word;
+        k += 1;
+    }
+    names
+};
+
+/// The words of the line.
+#[derive(Words)]
+struct Line {
+    #[word(name = "style")]
+    style: Chosen,
+}
+
+/// What the words choose.
+struct Chosen(AtomStyle);
+
+impl Value for Chosen {
+    const KIND: Kind = Kind::Choice(&ALL);
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        chosen(args).map(Self)
+    }
+}
 
 impl Style for AtomStyleCommand {
     fn name(&self) -> &'static str {
@@ -33,24 +96,9 @@ impl Style for AtomStyleCommand {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Written(
-                "atom_style atomic | sphere [0|1] | peri | bond | angle | molecular | full | charge | dipole | bpm/sphere | hybrid STYLE STYLE …",
-            ),
-            summary: "Says which properties particles have.",
-            text: "Must come before the box. Default: `atomic`.\n\n\
-                   - `atomic`: mass by type.\n\
-                   - `sphere`: radius, spin, own mass (LAMMPS: density times 4/3 π r³); the flag that LAMMPS needs for radii that \
-                   change (`fix adapt`) is read and not needed.\n\
-                   - `peri`: volume, position at creation, own mass (in LAMMPS' convention its density).\n\
-                   - `bond`: bonds, molecule IDs, mass by type.\n\
-                   - `angle` and `molecular`: what `bond` has, and angles between bonds, which are kept and exert nothing \
-                   (`angle_style zero`).\n\
-                   - `charge`: a charge, which `fix efield` pulls; charges do not feel each other here.\n\
-                   - `full`: what `molecular` and `charge` have.\n\
-                   - `dipole`: a charge and a dipole moment, which `fix efield` turns and `fix nve/sphere … update dipole` lets \
-                   follow the spin (`hybrid sphere dipole`).\n\
-                   - `bpm/sphere`: bonds, molecule IDs, and what `sphere` has.\n\
-                   - `hybrid sphere peri`, `hybrid sphere bond` …: what each of them has; the mass is one column.",
+            syntax: Syntax::Behind(Line::GRAMMAR),
+            summary: "Chooses which properties particles have.",
+            text: "It must come before the box. `hybrid sphere peri`, `hybrid sphere bond` … have what each of their styles has.",
             example: "atom_style hybrid sphere peri",
         }
     }
@@ -59,34 +107,34 @@ impl Style for AtomStyleCommand {
 impl CommandStyle for AtomStyleCommand {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
         before_box(cx, "atom_style")?;
-        let mut style = AtomStyle { chosen: true, ..AtomStyle::default() };
-        let first = a.expect("a style")?;
-        let mut named = vec![];
-        if first.text != "hybrid" {
-            add(&mut style, first, &mut named)?;
-            if first.text == "sphere" {
-                radius_flag(a)?;
-            }
-            return Ok(choose(style));
-        }
-        style.hybrid = true;
-        add(&mut style, a.expect("a style")?, &mut named)?;
-        while let Some(word) = a.next() {
-            if style.sphere && matches!(word.text.as_str(), "0" | "1") {
-                check_radius_flag(word)?;
-                continue;
-            }
-            add(&mut style, word, &mut named)?;
-        }
-        Ok(choose(style))
+        let Chosen(style) = read::<Line>(a, cx)?.style;
+        Ok(setting(move |cx| {
+            cx.world.particles.style = style;
+            Ok(())
+        }))
     }
 }
 
-fn choose(style: AtomStyle) -> Box<dyn Act> {
-    setting(move |cx| {
-        cx.world.particles.style = style;
-        Ok(())
-    })
+fn chosen(a: &mut Args) -> Result<AtomStyle> {
+    let mut style = AtomStyle { chosen: true, ..AtomStyle::default() };
+    let first = a.expect("a style")?;
+    let mut named = vec![];
+    if first.text != "hybrid" {
+        add(&mut style, first, &mut named)?;
+        if first.text == "sphere" {
+            radius_flag(a)?;
+        }
+        return Ok(style);
+    }
+    style.hybrid = true;
+    add(&mut style, a.expect("a style")?, &mut named)?;
+    while let Some(word) = a.next() {
+        if style.sphere && is_flag(word) {
+            continue;
+        }
+        add(&mut style, word, &mut named)?;
+    }
+    Ok(style)
 }
 
 fn add(style: &mut AtomStyle, word: &Word, before: &mut Vec<String>) -> Result<()> {
@@ -100,19 +148,18 @@ fn add(style: &mut AtomStyle, word: &Word, before: &mut Vec<String>) -> Result<(
     }
 }
 
-/// `atom_style sphere 0|1`: LAMMPS' flag for radii that change during a run, which they always may here.
+/// The flag of `atom_style sphere`.
 fn radius_flag(a: &mut Args) -> Result<()> {
     match a.next() {
-        Some(word) => check_radius_flag(word),
-        None => Ok(()),
+        Some(word) if !is_flag(word) => {
+            fail(Code::EXTRA_ARGUMENT, word.span, "atom_style sphere takes at most the flag 0 or 1")
+        }
+        _ => Ok(()),
     }
 }
 
-fn check_radius_flag(word: &Word) -> Result<()> {
-    match word.text.as_str() {
-        "0" | "1" => Ok(()),
-        _ => fail(Code::EXTRA_ARGUMENT, word.span, "atom_style sphere takes at most the flag 0 or 1"),
-    }
+fn is_flag(word: &Word) -> bool {
+    FLAGS.iter().any(|(flag, ())| *flag == word.text)
 }
 
 #[cfg(test)]

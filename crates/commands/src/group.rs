@@ -5,9 +5,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_styles::common::{self, free_id, in_group, setting, whole};
 use perigrain_styles::surface::{check_volumes, choose};
-use perigrain_styles::words::{
-    Alternative, At, AtomVariable, Forms, Kind, Part, Syntax, Value, Words,
-};
+use perigrain_styles::words::{Alternative, At, AtomVariable, Forms, Kind, Part, Syntax, Value, Words};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use perigrain_world::region::Variable;
 use perigrain_world::surface::{Rule, Surface};
@@ -208,10 +206,7 @@ impl Value for Numbers {
             Alternative {
                 word: "<>",
                 about: "",
-                parts: &[
-                    Part::bare("A", Kind::Whole),
-                    Part::bare("B", Kind::Whole),
-                ],
+                parts: &[Part::bare("A", Kind::Whole), Part::bare("B", Kind::Whole)],
             },
         ]),
         &Kind::Text,

@@ -94,10 +94,7 @@ enum Exclude {
 
 /// How many lists or numbers, and these.
 const fn counted(name: &'static str, kind: Kind) -> [Part; 2] {
-    [
-        Part::bare("N", Kind::Whole),
-        Part::bare(name, kind),
-    ]
+    [Part::bare("N", Kind::Whole), Part::bare(name, kind)]
 }
 
 /// Lists of types.

@@ -65,13 +65,7 @@ struct Columns(Vec<(Word, Word, Property)>);
 
 impl Value for Columns {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[Part::Many(
-            &[
-                Part::bare("PROPERTY", Kind::Text),
-                Part::bare("COLUMN", Kind::Text),
-            ],
-            1,
-        )],
+        parts: &[Part::Many(&[Part::bare("PROPERTY", Kind::Text), Part::bare("COLUMN", Kind::Text)], 1)],
         ..*Grammar::NONE
     });
     /// Takes pairs up to the next keyword that is no property in front of a column.

@@ -4,9 +4,10 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, Tick, When};
+use perigrain_styles::compute::TemperatureOption;
 use perigrain_styles::matter::{Masses, check_masses, count, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums};
-use perigrain_styles::words::{Grammar, Syntax};
+use perigrain_styles::words::{Given, Grammar, Syntax};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{KIND, MASK, MASS, TYPE_MASS, V};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -56,18 +57,12 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// Reads the options of `compute_modify`.
-    ///
-    /// # Errors
-    /// Unknown words and invalid numbers.
-    pub fn modify(&mut self, args: &mut Args) -> Result<()> {
-        while !args.is_empty() {
-            match args.choice("option of a temperature", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
-                "extra/dof" | "extra" => self.extra = Some(args.number("the number of degrees of freedom")?),
-                _ => self.dynamic = args.flag("dynamic/dof")?,
-            }
+    /// Takes an option of `compute_modify`.
+    pub fn modify(&mut self, option: TemperatureOption) {
+        match option {
+            TemperatureOption::ExtraDof(count) | TemperatureOption::Extra(count) => self.extra = Some(count),
+            TemperatureOption::DynamicDof(yes) | TemperatureOption::Dynamic(yes) => self.dynamic = yes,
         }
-        Ok(())
     }
 
     /// The counter for one run.
@@ -140,14 +135,15 @@ impl Compute for Declared {
         ))
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        self.rules.modify(args)
+    fn modify(&mut self, option: &Given<TemperatureOption>, _cx: &BuildCx) {
+        self.rules.modify(option.value);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_styles::compute::modify;
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
@@ -160,10 +156,10 @@ mod tests {
         // By hand, m = 2: Σ m v² = 44 over 3 · 3 − 3 degrees of freedom.
         assert_eq!((&slot.vector[..], slot.inner[0]), (&[2.0, 8.0, 34.0, 4.0, 0.0, 0.0][..], 6.0));
         assert!((slot.scalar - 44.0 / 6.0).abs() < 1e-14);
-        b.modify("extra/dof 1 dynamic/dof yes", |a, cx| c.modify(a, cx)).unwrap();
+        b.modify("extra/dof 1 dynamic/dof yes", |a, cx| modify(&mut *c, a, cx)).unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 44.0 / 8.0).abs() < 1e-14);
-        b.modify("extra/dof 9", |a, cx| c.modify(a, cx)).unwrap();
+        b.modify("extra/dof 9", |a, cx| modify(&mut *c, a, cx)).unwrap();
         assert_eq!(b.evaluate(&*c).unwrap().scalar, 0.0);
-        assert!(b.modify("thermo no", |a, cx| c.modify(a, cx)).is_err());
+        assert!(b.modify("thermo no", |a, cx| modify(&mut *c, a, cx)).is_err());
     }
 }

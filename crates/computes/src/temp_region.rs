@@ -80,6 +80,7 @@ impl Streams for Inside {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_styles::compute::modify;
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
     use perigrain_world::region::Shape;
@@ -96,7 +97,7 @@ mod tests {
         let flow = c.flow(&b.world).unwrap();
         assert_eq!((flow.taken[1], flow.taken[2]), ([0.0; 3], [4.0, 5.0, 0.0]));
         assert_eq!(flow.apart, [false, false, true]);
-        b.modify("extra/dof 0", |a, cx| c.modify(a, cx)).unwrap();
+        b.modify("extra/dof 0", |a, cx| modify(&mut *c, a, cx)).unwrap();
         assert!((b.evaluate(&*c).unwrap().scalar - 50.0 / 6.0).abs() < 1e-14);
         for words in ["", "nowhere", "left 1"] {
             assert!(b.compute(&TempRegion, words).is_err(), "{words}");

@@ -7,9 +7,10 @@ use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::sub;
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Op, Stage, Tick, When};
+use perigrain_styles::compute::TemperatureOption;
 use perigrain_styles::matter::sum;
 use perigrain_styles::step_op::{Wanted, fill_sums_if};
-use perigrain_styles::words::{Syntax, Words, read};
+use perigrain_styles::words::{Given, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Flow, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -141,14 +142,15 @@ impl Compute for Declared {
         self.bias.as_ref()
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        self.rules.modify(args)
+    fn modify(&mut self, option: &Given<TemperatureOption>, _cx: &BuildCx) {
+        self.rules.modify(option.value);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use perigrain_styles::compute::modify;
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
@@ -164,7 +166,7 @@ mod tests {
         assert!((slot.scalar - 17.2 / 12.0).abs() < 1e-14 && slot.vector[3] == 4.0);
         let mut spin = b.compute(&TempSphere, "dof rotate").unwrap();
         assert!((b.evaluate(&*spin).unwrap().scalar - 7.2 / 6.0).abs() < 1e-14);
-        b.modify("extra/dof 3", |a, cx| spin.modify(a, cx)).unwrap();
+        b.modify("extra/dof 3", |a, cx| modify(&mut *spin, a, cx)).unwrap();
         assert!((b.evaluate(&*spin).unwrap().scalar - 7.2 / 3.0).abs() < 1e-14);
         for words in ["dof", "dof some", "bias", "bias q", "mass 3"] {
             assert!(b.compute(&TempSphere, words).is_err(), "{words}");

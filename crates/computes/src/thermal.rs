@@ -4,10 +4,11 @@ use super::Compute;
 use super::temp::{Rules, offer};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, sub};
-use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, Tick, When};
+use perigrain_styles::compute::TemperatureOption;
 use perigrain_styles::matter::{Masses, check_masses, sum};
 use perigrain_styles::step_op::{Wanted, fill_sums_if};
+use perigrain_styles::words::Given;
 use perigrain_styles::{BuildCx, Flow, SealCx, Shape};
 use perigrain_world::field::{BOX, KIND, MASK, MASS, MEMO, REGIONS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Slot, SlotId, World};
@@ -147,7 +148,7 @@ impl<S: Streams> Compute for Thermal<S> {
         Some(Flow { taken, group: self.group, whole: self.flow.whole(), apart: self.flow.apart(w) })
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        self.rules.modify(args)
+    fn modify(&mut self, option: &Given<TemperatureOption>, _cx: &BuildCx) {
+        self.rules.modify(option.value);
     }
 }

@@ -113,13 +113,7 @@ impl Value for Groups {
     const KIND: Kind = Kind::Words(&Grammar {
         parts: &[
             Part::bare("n", Kind::Whole),
-            Part::Many(
-                &[
-                    Part::bare("group", Kind::Group),
-                    Part::bare("factor", Kind::Number),
-                ],
-                1,
-            ),
+            Part::Many(&[Part::bare("group", Kind::Group), Part::bare("factor", Kind::Number)], 1),
         ],
         keywords: &[],
         refused: &[],

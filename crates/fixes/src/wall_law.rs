@@ -32,7 +32,8 @@ pub fn numbers(name: &str) -> &'static [&'static str] {
 }
 
 const WELL: &[Part] = &[Part::number("epsilon"), Part::number("sigma"), Part::number("cutoff")];
-const MORSE: &[Part] = &[Part::number("D0"), Part::number("alpha"), Part::number("r0"), Part::number("cutoff")];
+const MORSE: &[Part] =
+    &[Part::number("D0"), Part::number("alpha"), Part::number("r0"), Part::number("cutoff")];
 
 const fn law(word: &'static str, about: &'static str, parts: &'static [Part]) -> Alternative {
     Alternative { word, about, parts }

@@ -25,15 +25,13 @@ pub enum Echo {
 }
 
 impl Echo {
-    /// Reads LAMMPS' words.
+    /// LAMMPS' words.
+    pub const NAMES: [(&'static str, Self); 4] =
+        [("none", Self::None), ("screen", Self::Screen), ("log", Self::Log), ("both", Self::Both)];
+
+    /// The meaning of a word.
     pub fn parse(word: &str) -> Option<Self> {
-        Some(match word {
-            "none" => Self::None,
-            "screen" => Self::Screen,
-            "log" => Self::Log,
-            "both" => Self::Both,
-            _ => return None,
-        })
+        Self::NAMES.iter().find(|name| name.0 == word).map(|name| name.1)
     }
 }
 

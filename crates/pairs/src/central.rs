@@ -6,7 +6,7 @@ mod table;
 
 use super::{ByPart, Deck, Facts, Mix, Pair, Scales, TypePairs};
 use op::Push;
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -119,13 +119,8 @@ impl<L: Law> Pair for Declared<L> {
         self.only = Some(pairs.to_vec());
     }
 
-    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if command != "pair_modify" {
-            let text = format!("`{command}` does not concern pair_style {}", L::NAME);
-            return fail(Code::CONFLICT, cx.span, text);
-        }
-        self.rule = Mix::read(args)?;
-        Ok(())
+    fn mix(&mut self, rule: Mix) {
+        self.rule = rule;
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {

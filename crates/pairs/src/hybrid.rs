@@ -1,6 +1,6 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
-use super::{ByPart, Deck, Facts, PAIRS, Pair, PairStyle, Scales, TypePairs};
+use super::{ByPart, Deck, Facts, Mix, PAIRS, Pair, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
@@ -237,15 +237,11 @@ impl Pair for Declared {
         Scales { cutoff, ..Scales::default() }
     }
 
+    fn mix(&mut self, rule: Mix) {
+        self.subs.iter_mut().filter(|s| s.facts().mixes).for_each(|sub| sub.mix(rule));
+    }
+
     fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if command == "pair_modify" {
-            let words = args.clone();
-            let mut mixing = self.subs.iter_mut().filter(|s| s.facts().mixes);
-            return mixing.try_for_each(|sub| {
-                *args = words.clone();
-                sub.modify(command, args, cx)
-            });
-        }
         let solid = self.subs.iter_mut().find(|s| s.facts().true_forces.is_some());
         match (command, solid) {
             ("peri_modify", Some(sub)) => sub.modify(command, args, cx),

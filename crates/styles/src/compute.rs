@@ -1,5 +1,6 @@
 //! What a compute is: a style that reads its line, and what it declares.
 
+use super::words::{Each, Given, read};
 use super::{BuildCx, Flow, SealCx, Shape, Style};
 use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -66,19 +67,10 @@ pub trait Compute: DynClone + Send {
         Ok(None)
     }
 
-    /// `compute_modify ID …`. The options of temperatures concern no other compute.
-    ///
-    /// # Errors
-    /// Unknown keywords.
-    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let span = args.here();
-        match args.choice("option of a compute", &["extra/dof", "extra", "dynamic/dof", "dynamic"])? {
-            "extra/dof" | "extra" => drop(args.number("the number of degrees of freedom")?),
-            _ => drop(args.flag("dynamic/dof")?),
-        }
+    /// An option of `compute_modify ID …`. Those of temperatures concern no other compute.
+    fn modify(&mut self, option: &Given<TemperatureOption>, cx: &BuildCx) {
         let text = "without effect: only temperatures have degrees of freedom";
-        cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
-        Ok(())
+        cx.note(Diagnostic::note(Code::NO_EFFECT, option.word.span, text));
     }
 
     /// What a temperature subtracts from velocities before it uses them, if anything (`Shape::flow`).
@@ -93,6 +85,34 @@ pub trait Compute: DynClone + Send {
 
     /// Uses another temperature, if it uses one (`thermo_modify temp`).
     fn take_temperature(&mut self, _temperature: &perigrain_lang::ValueRef) {}
+}
+
+/// An option of `compute_modify`.
+#[derive(Clone, Copy, Debug, perigrain_words::Words)]
+#[word(keywords)]
+pub enum TemperatureOption {
+    /// The number of degrees of freedom that are taken off, for `compute temp` and its like; 3 without it.
+    #[word(word = "extra/dof", once)]
+    ExtraDof(#[word(name = "N", what = "the number of degrees of freedom")] f64),
+    /// The number of degrees of freedom that are taken off, for `compute temp` and its like; 3 without it.
+    #[word(once)]
+    Extra(#[word(name = "N", what = "the number of degrees of freedom")] f64),
+    /// Whether degrees of freedom are counted at each use; they are anyway, but under `-compat lammps`.
+    #[word(word = "dynamic/dof", once)]
+    DynamicDof(#[word(name = "yes|no", what = "dynamic/dof")] bool),
+    /// Whether degrees of freedom are counted at each use; they are anyway, but under `-compat lammps`.
+    #[word(once)]
+    Dynamic(#[word(name = "yes|no", what = "dynamic/dof")] bool),
+}
+
+/// Reads options of `compute_modify` and sets them.
+///
+/// # Errors
+/// Unknown options and values that are none.
+pub fn modify(compute: &mut dyn Compute, args: &mut Args, cx: &BuildCx) -> Result<()> {
+    let Each(options) = read::<Each<TemperatureOption>>(args, cx)?;
+    options.iter().for_each(|option| compute.modify(option, cx));
+    Ok(())
 }
 
 dyn_clone::clone_trait_object!(Compute);

@@ -193,7 +193,10 @@ pub trait Pair: DynClone + Send {
         None
     }
 
-    /// `peri_modify …` and `pair_modify mix …`, where types are mixed by a rule: options by command name.
+    /// `pair_modify mix …`, where types are mixed by a rule.
+    fn mix(&mut self, _rule: Mix) {}
+
+    /// `peri_modify …`: options by command name.
     ///
     /// # Errors
     /// By default the pair style has none.

@@ -107,7 +107,11 @@ impl Built {
         self.begin.push(quote!(let #ident: #ty = #default;));
         let value = field.read_value()?;
         if given.once {
-            let given = if field.is_list()? { quote!(!self.#ident.is_empty()) } else { quote!(self.#ident.is_some()) };
+            let given = if field.is_list()? {
+                quote!(!self.#ident.is_empty())
+            } else {
+                quote!(self.#ident.is_some())
+            };
             self.arms.push(quote!(#word if #given => return twice(word),));
         }
         self.arms.push(match field.is_list()? && !given.list {

@@ -1,13 +1,15 @@
 //! Pages of the commands that declare: pair styles, fixes, computes, dumps, and their options.
 
 use super::Entry;
+use crate::graph::heads::{self, OfCompute, OfDump, OfFix};
+use crate::graph::pair_modify::PairModify;
 use perigrain_styles::Doc;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Syntax, Words};
 
 pub(super) const PAIR_STYLE: Entry = (
     "pair_style",
     Doc {
-        syntax: Syntax::Written("pair_style STYLE word …\npair_style none"),
+        syntax: Syntax::Behind(&heads::PAIR_STYLE),
         summary: "Chooses the forces between particles.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc pair_style peri/pmb`. Another \
             style forgets the coefficients of the old one, and so does `hybrid`; the same style again keeps them. With `none`, or without the command, particles do not \
@@ -19,10 +21,9 @@ pub(super) const PAIR_STYLE: Entry = (
 pub(super) const PAIR_COEFF: Entry = (
     "pair_coeff",
     Doc {
-        syntax: Syntax::Written("pair_coeff I J word …"),
+        syntax: Syntax::Behind(&heads::PAIR_COEFF),
         summary: "Gives the coefficients of the pair style for some types.",
-        text: "`I` and `J` are types or ranges: `2`, `*`, `2*`, `*4`, `2*4`. Only pairs with i ≤ j count, so the smaller \
-            type comes first; a line that names none is refused. A later line replaces what an earlier one gave. What the \
+        text: "The smaller type comes first; a line that names none is refused. A later line replaces what an earlier one gave. What the \
             words are is on the page of the pair style. It needs `pair_style` and the box before it, and every pair of \
             types must have coefficients, its own or mixed ones where the style can mix, when a run begins. With `hybrid` the \
             words begin with the name of the sub-style.",
@@ -33,14 +34,9 @@ pub(super) const PAIR_COEFF: Entry = (
 pub(super) const PAIR_MODIFY: Entry = (
     "pair_modify",
     Doc {
-        syntax: Syntax::Written("pair_modify [pair STYLE] keyword value …"),
+        syntax: Syntax::Behind(PairModify::GRAMMAR),
         summary: "How types are mixed, and options of LAMMPS' pair styles that have no effect here.",
-        text: "`mix geometric|arithmetic|sixthpower` is the rule by which `soft` and `bpm/spring` mix the cutoffs of two types without a \
-            line of their own. `shift yes|no`, `tail yes|no`, `table N`, `tabinner R`, \
-            `table/disp N`, `tabinner/disp R`, `neigh/trim yes|no`, `compute/tally yes|no`, `nofdotr` and `compute yes` are read \
-            for LAMMPS' sake, and a note says that they change nothing: no pair style here has a shift, a tail or a table, \
-            and `mix` does not concern granular styles, which mix in one way, as in LAMMPS. `pair STYLE` names a sub-style of `hybrid`. `compute no` and \
-            `special` would change forces; they are refused.",
+        text: "A note says which words change nothing. `special` would change forces and is refused.",
         example: "pair_modify shift yes mix geometric",
     },
 );
@@ -48,7 +44,7 @@ pub(super) const PAIR_MODIFY: Entry = (
 pub(super) const BOND_STYLE: Entry = (
     "bond_style",
     Doc {
-        syntax: Syntax::Written("bond_style STYLE word …\nbond_style none"),
+        syntax: Syntax::Behind(&heads::BOND_STYLE),
         summary: "Chooses the forces along bonds.",
         text: "Each style has a page of its own, as `perigrain doc bond_style harmonic`. Needs an atom style with bonds. A new \
             `bond_style` forgets the coefficients of the old one; with `none`, or without the command, bonds exert no forces and \
@@ -62,9 +58,9 @@ pub(super) const BOND_STYLE: Entry = (
 pub(super) const BOND_COEFF: Entry = (
     "bond_coeff",
     Doc {
-        syntax: Syntax::Written("bond_coeff T word …"),
+        syntax: Syntax::Behind(&heads::BOND_COEFF),
         summary: "Gives the coefficients of the bond style for some bond types.",
-        text: "`T` is a bond type or a range: `2`, `*`, `2*`, `*4`, `2*4`. What the words are is on the page of the bond style; \
+        text: "What the words are is on the page of the bond style; \
             with `hybrid` they begin with the name of the sub-style. It needs `bond_style` and the box before it, and every \
             bond type must have coefficients when a run begins.",
         example: "units lj\natom_style bond\nregion b block 0 4 0 4 0 4\ncreate_box 1 b bond/types 1 extra/bond/per/atom 2\n\
@@ -92,10 +88,9 @@ pub(super) const PERI_MODIFY: Entry = (
 pub(super) const FIX: Entry = (
     "fix",
     Doc {
-        syntax: Syntax::Written("fix ID group STYLE word …"),
+        syntax: Syntax::Behind(&heads::FIX),
         summary: "Declares something that is done to particles in every step.",
-        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. The ID has \
-            letters, digits and underscores. Within a stage of the step, fixes act in the order of their lines. The same \
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc fix nve`. Within a stage of the step, fixes act in the order of their lines. The same \
             ID with the same style replaces the old fix in its place, with a warning if the group is another one; with another \
             style it is refused. Values of a fix are `f_ID` and `f_ID[i]` in formulas, thermo output and dumps.",
         example: "fix 1 all nve\nfix calm plate viscous 1.0e-3",
@@ -105,12 +100,9 @@ pub(super) const FIX: Entry = (
 pub(super) const FIX_MODIFY: Entry = (
     "fix_modify",
     Doc {
-        syntax: Syntax::Written("fix_modify ID [energy yes|no] [respa M] [keyword value …]"),
+        syntax: Syntax::Behind(&heads::FIX_MODIFY),
         summary: "Sets options of a fix.",
-        text: "`energy yes` adds the energy of the fix to the potential energy `pe`; it is refused for a fix that has \
-            none. `respa M` names the level of steps in which addforce, addtorque, aveforce, drag, gravity, indent, setforce, \
-            spring, spring/self, viscous and viscous/sphere add their force under `run_style respa`: from 1, the outermost if there are \
-            fewer, and 0 for the outermost; other fixes have no such choice. Other keywords belong to the fix and stand on its \
+        text: "Fixes without such a level refuse `respa`. Other keywords belong to the fix and stand on its \
             page. LAMMPS' `virial`, `temp`, `press`, `dynamic/dof` and `bodyforces` are refused unless the page names them.",
         example: "fix tip all indent 1.0e9 sphere 0 0 0.006 0.004 units box\nfix_modify tip energy yes",
     },
@@ -119,7 +111,7 @@ pub(super) const FIX_MODIFY: Entry = (
 pub(super) const UNFIX: Entry = (
     "unfix",
     Doc {
-        syntax: Syntax::Written("unfix ID"),
+        syntax: Syntax::Behind(OfFix::GRAMMAR),
         summary: "Removes a fix.",
         text: "What it has done to the particles stays. Thermo columns, dumps and variables that name it are refused at \
             the next run.",
@@ -130,7 +122,7 @@ pub(super) const UNFIX: Entry = (
 pub(super) const COMPUTE: Entry = (
     "compute",
     Doc {
-        syntax: Syntax::Written("compute ID group STYLE word …"),
+        syntax: Syntax::Behind(&heads::COMPUTE),
         summary: "Declares a quantity to be computed from the particles.",
         text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc compute reduce`. A compute \
             costs nothing until something reads it, and is computed at most once in a step. `c_ID` is its number or its \
@@ -145,11 +137,9 @@ pub(super) const COMPUTE: Entry = (
 pub(super) const COMPUTE_MODIFY: Entry = (
     "compute_modify",
     Doc {
-        syntax: Syntax::Written("compute_modify ID keyword value …"),
+        syntax: Syntax::Behind(&heads::COMPUTE_MODIFY),
         summary: "Sets options of a compute.",
-        text: "Only `compute temp` has options: `extra/dof N` (or `extra`) sets the number of degrees of freedom that are \
-            taken off, 3 without it; `dynamic/dof yes|no` (or `dynamic`) is read, and the particles are counted anew each \
-            time anyway.",
+        text: "Only temperatures have options; a note names those of other computes, which have no effect.",
         example: "compute_modify thermo_temp extra/dof 0",
     },
 );
@@ -157,7 +147,7 @@ pub(super) const COMPUTE_MODIFY: Entry = (
 pub(super) const UNCOMPUTE: Entry = (
     "uncompute",
     Doc {
-        syntax: Syntax::Written("uncompute ID"),
+        syntax: Syntax::Behind(OfCompute::GRAMMAR),
         summary: "Removes a compute.",
         text: "Thermo columns, dumps and variables that name it are refused at the next run.",
         example: "compute energy all ke\nuncompute energy",
@@ -167,10 +157,9 @@ pub(super) const UNCOMPUTE: Entry = (
 pub(super) const DUMP: Entry = (
     "dump",
     Doc {
-        syntax: Syntax::Written("dump ID group STYLE N FILE word …"),
+        syntax: Syntax::Behind(&heads::DUMP),
         summary: "Writes snapshots of particles every N steps.",
-        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc dump custom`. Snapshots are \
-            written at steps that are multiples of `N`, the first step of a run among them. A `*` in the file name becomes \
+        text: "`perigrain doc` lists the styles; each has a page of its own, as `perigrain doc dump custom`. A `*` in the file name becomes \
             the step. Name and options are checked when the line is read; the file is made with the first snapshot. An ID \
             that exists is refused.",
         example: "dump 1 all custom 2 flow.*.txt id type x y z vx vy vz",
@@ -193,7 +182,7 @@ pub(super) const DUMP_MODIFY: Entry = (
 pub(super) const UNDUMP: Entry = (
     "undump",
     Doc {
-        syntax: Syntax::Written("undump ID"),
+        syntax: Syntax::Behind(OfDump::GRAMMAR),
         summary: "Ends a dump.",
         text: "Its file is complete and stays.",
         example: "dump 1 all atom 1 flow.txt\nrun 1\nundump 1",

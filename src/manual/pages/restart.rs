@@ -1,25 +1,26 @@
 //! Pages of restart files, and of runs over what dumps hold.
 
 use super::Entry;
+use crate::graph::restarts::RestartLine;
+use crate::session::lines::{ReadRestart, WriteRestart};
+use perigrain_commands::read_dump;
 use perigrain_styles::Doc;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Syntax, Words};
 
 pub(super) const RESTART: Entry = (
     "restart",
     Doc {
-        syntax: Syntax::Written("restart N ROOT\nrestart N FILE1 FILE2\nrestart 0"),
+        syntax: Syntax::Behind(RestartLine::GRAMMAR),
         summary: "Writes restart files during a run.",
-        text: "Files are written at steps that are multiples of `N`, but not where a run begins. With one name every step has \
-            a file of its own: `*` in the name becomes the step, else `.` and the step are appended. With two names the \
-            files are written in turn; a restarted run continues with the one it did not come from. Both kinds may be in \
-            force. `restart 0` ends both. What is in a file and how it is read is on the page of `read_restart`.\n\n\
+        text: "Nothing is written where a run begins. With one name every step has a file of its own; with two names the files are \
+            written in turn, and a restarted run continues with the one it did not come from. Both kinds may be in force. \
+            What is in a file and how it is read is on the page of `read_restart`.\n\n\
             A run or minimization that is ended before its last step (Ctrl-C, a signal, `timer timeout`) makes one step \
             more as its last one, with a row of the step table, and then writes one more file: byte by byte the one that \
             `write_restart` writes behind a run of so many steps. A run that an error ends (particles lost, energy out of \
             control) leaves none besides those of its schedule.\n\n\
             A file is written beside its place, brought to the disk and then moved there: whenever the program or the \
-            machine dies, a file of this name is whole. `N` may be `v_name`: the variable names the next step each time, by \
-            `logfreq()`, `stride()` and the like. LAMMPS' `%`, `fileper` and `nfile` (one \
+            machine dies, a file of this name is whole. LAMMPS' `%`, `fileper` and `nfile` (one \
             file per processor) are refused.",
         example: "restart 2 plate.*.restart\nrestart 4 even.restart odd.restart\nrun 4",
     },
@@ -28,9 +29,9 @@ pub(super) const RESTART: Entry = (
 pub(super) const WRITE_RESTART: Entry = (
     "write_restart",
     Doc {
-        syntax: Syntax::Written("write_restart FILE"),
+        syntax: Syntax::Behind(WriteRestart::GRAMMAR),
         summary: "Writes a restart file now.",
-        text: "`*` in the name becomes the step. Writing changes nothing in the scene (LAMMPS wraps particles into the box and \
+        text: "Writing changes nothing in the scene (LAMMPS wraps particles into the box and \
             rebuilds its lists). See `read_restart` and `restart`.",
         example: "write_restart plate.*.restart",
     },
@@ -39,9 +40,9 @@ pub(super) const WRITE_RESTART: Entry = (
 pub(super) const READ_RESTART: Entry = (
     "read_restart",
     Doc {
-        syntax: Syntax::Written("read_restart FILE"),
+        syntax: Syntax::Behind(ReadRestart::GRAMMAR),
         summary: "Continues from a restart file: box, particles, bonds, contacts, settings.",
-        text: "It takes the place of `create_box` or `read_data`. A `*` in the name stands for the latest step. The file holds \
+        text: "It takes the place of `create_box` or `read_data`. The file holds \
             the whole scene: clock and time step, units, boundary, box, lattice, types, particles with their forces, groups, \
             regions, materials, peridynamic bonds whole and broken, what contacts remember, neighbour settings and the \
             moment of the last rebuild, the pair style with its coefficients, and the state that fixes keep.\n\n\
@@ -64,19 +65,13 @@ pub(super) const READ_RESTART: Entry = (
 pub(super) const RERUN: Entry = (
     "rerun",
     Doc {
-        syntax: Syntax::Written(
-            "rerun FILE … [first N] [last N] [every N] [skip N] [start N] [stop N] [post yes|no] dump FIELD … [keyword value …]",
-        ),
+        syntax: Syntax::Behind(&read_dump::RERUN),
         summary: "Computes forces and output for the snapshots of dumps, without motion.",
-        text: "The files are text dumps, read one after the other; what stands after `dump` is as for `read_dump`, without \
-            file and step. `start` and `stop` are as for `run`; no snapshot may be behind `stop`.\n\n\
-            Snapshots before the step `first` or behind `last` are left out, and so are those whose step is not above that \
-            of the one before; after the first one, one in `skip` is looked at, and taken if its step is a multiple of \
-            `every`. It is an error if none is left (LAMMPS takes the first one behind `first` even if it is behind \
-            `last`, and so does perigrain under `-compat lammps`).\n\n\
+        text: "Snapshots whose step is not above that of the one before are left out. It is an error if none is left (LAMMPS \
+            takes the first one behind `first` even if it is behind `last`, and so does perigrain under `-compat lammps`).\n\n\
             For each, forces are computed as in the setup of a run, fixes that change forces act and integrators do not; \
-            thermo output, dumps and averages appear for steps that are multiples of their intervals, rows of the step \
-            table for the first and the last snapshot too.\n\n\
+            thermo output, dumps and averages appear for steps that are multiples of their intervals, rows of the step table for \
+            the first and the last snapshot too.\n\n\
             Contacts remember at every snapshot, and afterwards, what they remembered before `rerun`; those with walls as long as no \
             snapshot opens them (under `-compat lammps` afterwards what the last snapshot has left, as in LAMMPS). \
             The clock shows step · dt of each snapshot (LAMMPS counts the time from its own first snapshot). Peridynamic \

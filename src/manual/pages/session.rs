@@ -1,26 +1,24 @@
 //! Pages of the commands about the session: run, output, echo, modes.
 
 use super::Entry;
+use crate::graph::heads;
+use crate::session::lines::{
+    CommStyle, Compatibility, Echoing, Info, Logging, Minimize, Package, Partition, Print, Run, Suffix,
+    Sweep, TimerLine,
+};
 use perigrain_styles::Doc;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Grammar, Syntax, Words};
 
 pub(super) const RUN: Entry = (
     "run",
     Doc {
-        syntax: Syntax::Written(
-            "run N [upto] [start N1] [stop N2] [pre yes|no] [post yes|no] [every M \"command\" …]",
-        ),
+        syntax: Syntax::Behind(Run::GRAMMAR),
         summary: "Makes time steps.",
-        text: "Checks all declarations together, seals them into a step plan (`perigrain plan` prints it), and makes `N` \
-            steps. With `upto`, `N` is the step to arrive at. `run 0` computes forces, energies and output of the present \
-            state.\n\n\
-            - `start` and `stop` are the steps over which ramps go (`ramp()`, `fix setforce` with variables …) when \
-            several runs share one; they must enclose the run's steps.\n\
-            - `every M` stops every `M` steps and carries out the commands, each in quotes; `NULL` stands for none. \
-            The stretches are runs of their own; with `pre no post no` only the first has a setup and only the last \
-            tables. `quit` among them ends run and deck; `jump` is refused there.\n\
-            - `post no` leaves out the tables of time and neighbours behind the run.\n\
-            - `pre` is read for LAMMPS' decks. A second run of an unchanged scene reuses forces anyway and equals one \
+        text: "Checks all declarations together, seals them into a step plan (`perigrain plan` prints it), and makes the \
+            steps. `start` and `stop` must enclose the run's steps.\n\n\
+            With `every` the stretches between commands are runs of their own; with `pre no post no` only the first has a setup and \
+            only the last tables. `quit` among the commands ends run and deck; `jump` is refused there.\n\n\
+            A second run of an unchanged scene reuses forces anyway and equals one \
             longer run bit by bit; a changed scene always computes forces anew. Under `compat lammps`, `pre yes` (the \
             default) computes them again, as LAMMPS does.\n\n\
             A run without box, with type pairs that have no coefficients, or types without mass is refused; a run that \
@@ -36,11 +34,9 @@ pub(super) const RUN: Entry = (
 pub(super) const MINIMIZE: Entry = (
     "minimize",
     Doc {
-        syntax: Syntax::Written("minimize ETOL FTOL MAXITER MAXEVAL"),
+        syntax: Syntax::Behind(Minimize::GRAMMAR),
         summary: "Moves particles until the energy is lowest.",
-        text: "Stops when the energy changes by less than the part `ETOL` in an iteration, when the forces together are \
-            shorter than `FTOL` [force; force density for peridynamic particles in LAMMPS' convention], after `MAXITER` \
-            iterations, or after `MAXEVAL` evaluations of forces (`cg` and `sd` only, as in LAMMPS). `min_style` chooses the \
+        text: "Stops at the first of these four limits. `min_style` chooses the \
             algorithm, `min_modify` its numbers. Where a line search of `cg` or `sd` only looks, no bond breaks or flows; it may where the search ends (LAMMPS: anywhere; so under `-compat lammps`).\n\n\
             Iterations are steps: thermo output, dumps and restart files come at their intervals, and once more where the \
             end is early. The time they show is of no meaning and is not counted by the next run. The log then gives the \
@@ -60,11 +56,10 @@ pub(super) const MINIMIZE: Entry = (
 pub(super) const PRINT: Entry = (
     "print",
     Doc {
-        syntax: Syntax::Written("print \"text\" [file NAME] [append NAME] [screen yes|no] [universe yes|no]"),
+        syntax: Syntax::Behind(Print::GRAMMAR),
         summary: "Writes a line to screen and log, or to a file too.",
         text: "Values are put into the text when it is printed: `$x`, `${name}`, `$(formula:%.3f)`. Text in `\"\"\"…\"\"\"` \
-            may have several lines. `file` starts a file anew, `append` adds to it. `screen no` keeps the line off the \
-            screen; it still goes into the log. `universe` is without effect: there is one.",
+            may have several lines. `file` and `append` exclude each other.",
         example: "print \"step $(step): $(count(plate)) particles in the plate\"\n\
             print \"# v height\" file result.txt screen no\n\
             print \"$(vcm(ball,z):%.3f) $(xcm(ball,z):%.5f)\" append result.txt",
@@ -74,10 +69,9 @@ pub(super) const PRINT: Entry = (
 pub(super) const LOG: Entry = (
     "log",
     Doc {
-        syntax: Syntax::Written("log FILE [append] | none"),
+        syntax: Syntax::Behind(Logging::GRAMMAR),
         summary: "Changes the log file.",
-        text: "The present log is finished and `FILE` continues from here, written anew or, with `append`, behind what it \
-            holds. `none` ends logging. The first log is `log.lammps`, or what `-log` says.",
+        text: "The present log is finished and `FILE` continues from here. The first log is `log.lammps`, or what `-log` says.",
         example: "log second.log\nlog none",
     },
 );
@@ -85,7 +79,7 @@ pub(super) const LOG: Entry = (
 pub(super) const ECHO: Entry = (
     "echo",
     Doc {
-        syntax: Syntax::Written("echo none|screen|log|both"),
+        syntax: Syntax::Behind(Echoing::GRAMMAR),
         summary: "Chooses where each line of the deck is repeated.",
         text: "Without it the log has them, the screen has not. A line with values put in is repeated as written and \
             after each value.",
@@ -96,7 +90,7 @@ pub(super) const ECHO: Entry = (
 pub(super) const CLEAR: Entry = (
     "clear",
     Doc {
-        syntax: Syntax::Written("clear"),
+        syntax: Syntax::Behind(Grammar::NONE),
         summary: "Forgets the scene: box, particles, all declarations and settings.",
         text: "Variables, the log and `compat` stay. What follows starts a new scene with `units` and so on. Dumps end \
             here; a file of the same name is written anew by the next scene.",
@@ -109,7 +103,7 @@ pub(super) const CLEAR: Entry = (
 pub(super) const COMPAT: Entry = (
     "compat",
     Doc {
-        syntax: Syntax::Written("compat lammps[/2025|/2026]|none"),
+        syntax: Syntax::Behind(Compatibility::GRAMMAR),
         summary: "Gives LAMMPS' numbers also where LAMMPS is wrong.",
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
             it changes and by how much; the log lists what concerns the deck. `none` goes back. LAMMPS has no such \
@@ -146,13 +140,9 @@ pub(super) const SHELL: Entry = (
 pub(super) const INFO: Entry = (
     "info",
     Doc {
-        syntax: Syntax::Written("info [out screen|log|append FILE|overwrite FILE] category …"),
+        syntax: Syntax::Behind(Info::GRAMMAR),
         summary: "Shows what the session holds.",
-        text: "Categories: `system` (units, atom style, particles, box, time step), `groups` `regions` `computes` `dumps` \
-            `fixes` `variables` `coeffs` (which pairs of types have coefficients), `memory`, `communication` (threads), \
-            `time`, `configuration` (version and system), `styles [all|atom|command|compute|dump|fix|pair]` (what there is), \
-            `accelerator` and `fft` (none here), `all`. The beginning of a word is enough, as in LAMMPS; an unknown one is \
-            refused. The text goes to the screen alone if `out` does not say otherwise.",
+        text: "The beginning of a category is enough, as in LAMMPS; an unknown one is refused.",
         example: "info system groups variables\ninfo styles pair out log",
     },
 );
@@ -160,13 +150,11 @@ pub(super) const INFO: Entry = (
 pub(super) const TIMER: Entry = (
     "timer",
     Doc {
-        syntax: Syntax::Written("timer [off|loop|normal|full] [sync|nosync] [timeout H:MM:SS|off] [every N]"),
+        syntax: Syntax::Behind(TimerLine::GRAMMAR),
         summary: "Limits the time that runs may take; chooses how much is said about time.",
-        text: "- `timeout`: runs end at the first step that is a multiple of `every` (10) after this much time, counted from \
-            this line; further runs are passed over. `SS`, `MM:SS` or `H:MM:SS`; `off` takes the limit back. `is_timeout()` \
-            and the thermo keyword `timeremain` depend on it.\n\
-            - `off` and `loop` leave out the tables behind a run, `normal` and `full` (the same here) have them.\n\
-            - `sync` and `nosync` are for LAMMPS' processes; there is one here.",
+        text: "Once the limit has passed, further runs are passed over. A time is `SS`, `MM:SS` or `H:MM:SS`. `is_timeout()` and the \
+            thermo keyword `timeremain` depend on it. Of words that exclude each other the last one counts; without the command it is \
+            `normal nosync timeout off every 10`.",
         example: "timer timeout 1:00:00 every 5\nrun 4\nif \"$(is_timeout())\" then \"print 'out of time'\"\ntimer timeout off",
     },
 );
@@ -174,11 +162,9 @@ pub(super) const TIMER: Entry = (
 pub(super) const PARTITION: Entry = (
     "partition",
     Doc {
-        syntax: Syntax::Written("partition yes|no N command word …"),
+        syntax: Syntax::Behind(Partition::GRAMMAR),
         summary: "Carries out a command on some of the partitions.",
-        text: "Partitions are the processes that `-partition` on the command line makes; without it there is one, with the number 1. N is a \
-            number or a range: `*`, `*3`, `2*`, `2*3`. With `yes` the command is carried out in the partitions that N means as if it \
-            stood alone, and passed over in the others; with `no` it is the other way round. A partition that does not exist is refused.",
+        text: "Partitions are the processes that `-partition` on the command line makes; without it there is one, with the number 1. A partition that does not exist is refused.",
         example: "partition yes 1 print \"on the first partition\"",
     },
 );
@@ -186,12 +172,7 @@ pub(super) const PARTITION: Entry = (
 pub(super) const SWEEP: Entry = (
     "sweep",
     Doc {
-        syntax: Syntax::Written(
-            "sweep each NAME VALUE … [each NAME VALUE …] [zip NAME NAME …] [table FILE] [report WORD …]\n\
-            perigrain sweep DECK [-each NAME VALUE …] [-zip NAME NAME …] [-table FILE] [-report WORD …]\n\
-            \u{20}                    [-jobs N] [-threads N] [-out DIR] [-retry N] [-anew] [switch …]\n\
-            perigrain sweep DIR -status",
-        ),
+        syntax: Syntax::Behind(Sweep::GRAMMAR),
         summary: "Many runs of the deck side by side, each with other values of variables, and one table of what they give.",
         text: SWEEP_TEXT,
         example: "sweep each v 10 20 30 each angle 0..90:30 report v_force pe\n\
@@ -200,13 +181,14 @@ pub(super) const SWEEP: Entry = (
     },
 );
 
-const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; several lists mean all combinations, the last one \
-    fastest. `a..b` and `a..b:step` are whole numbers, `a:b:n` are n numbers evenly from a to b; anything else is a text. `zip` ties lists \
-    together that are equally long, `table` reads one run per line below a line with the variables' names, between commas or blanks. \
-    `report` names what each run reports at its end, in the words of formulas: `c_ID`, `f_ID[2]`, `v_NAME`, words of thermo output.\n\n\
-    In a deck that is run by itself the line defines the variables that are not there yet with their first values, and says so. `perigrain sweep` makes \
+const SWEEP_TEXT: &str = "In a deck that is run by itself the line defines the variables that are not there yet with their first values, and says so. `perigrain sweep` makes \
     all runs; lists on its command line take the place of those in the deck, and `-report` adds to what the deck reports. `perigrain check` \
     checks all combinations, of more than 64 the first and the last.\n\n\
+    ```text\n\
+    perigrain sweep DECK [-each NAME VALUE …] [-zip NAME NAME …] [-table FILE] [-report WORD …]\n\
+    \u{20}                    [-jobs N] [-threads N] [-out DIR] [-retry N] [-anew] [switch …]\n\
+    perigrain sweep DIR -status\n\
+    ```\n\n\
     - `-jobs N`: so many runs at once, on ranks on each of them (one per core); `-threads N`: threads of each (the cores shared out);\n\
     - `-out DIR`: the folder (`DECK.sweep`), with a folder for each run, `table.csv`, `times.csv` and the journal;\n\
     - `-retry N`: a run that fails is tried N times more;\n\
@@ -219,7 +201,7 @@ const SWEEP_TEXT: &str = "`each` gives a list of values for an index variable; s
 pub(super) const SUFFIX: Entry = (
     "suffix",
     Doc {
-        syntax: Syntax::Written("suffix off|on|gpu|intel|kk|omp|opt\nsuffix hybrid SUFFIX SUFFIX"),
+        syntax: Syntax::Behind(Suffix::GRAMMAR),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "LAMMPS chooses variants of styles with it. Here kernels are chosen by what the scene and the processor \
             offer; a note in the log says once that the line does nothing.",
@@ -230,7 +212,7 @@ pub(super) const SUFFIX: Entry = (
 pub(super) const PACKAGE: Entry = (
     "package",
     Doc {
-        syntax: Syntax::Written("package gpu|intel|kokkos|omp|opt word …"),
+        syntax: Syntax::Behind(Package::GRAMMAR),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "A note in the log says so once. Threads are set by `-threads N` (or `-pk omp N`) on the command line.",
         example: "package omp 4",
@@ -240,7 +222,7 @@ pub(super) const PACKAGE: Entry = (
 pub(super) const COMM_STYLE: Entry = (
     "comm_style",
     Doc {
-        syntax: Syntax::Written("comm_style brick|tiled"),
+        syntax: Syntax::Behind(CommStyle::GRAMMAR),
         summary: "Taken for LAMMPS' decks, without effect.",
         text: "The box is not divided among processes; a note in the log says once that the line does nothing.",
         example: "comm_style tiled",
@@ -263,7 +245,7 @@ pub(super) const BALANCE: Entry = (
 pub(super) const WRITE_DUMP: Entry = (
     "write_dump",
     Doc {
-        syntax: Syntax::Written("write_dump group style FILE [attribute …] [modify keyword value …]"),
+        syntax: Syntax::Behind(&heads::WRITE_DUMP),
         summary: "Writes one snapshot now.",
         text: "Style, attributes and the options after `modify` are those of `dump` and `dump_modify`; the file needs no \
             `*`. Values of computes and variables are computed for the present state; energies per particle need a `run 0` \

@@ -1,17 +1,16 @@
 //! Pages of the step table: thermo, thermo_style, thermo_modify.
 
 use super::Entry;
+use crate::graph::thermo::words::{Interval, Modify, Style};
 use perigrain_styles::Doc;
-use perigrain_styles::words::Syntax;
+use perigrain_styles::words::{Forms, Syntax, Words};
 
 pub(super) const THERMO: Entry = (
     "thermo",
     Doc {
-        syntax: Syntax::Written("thermo N | v_name"),
+        syntax: Syntax::Behind(Interval::GRAMMAR),
         summary: "Prints a row of the step table every N steps.",
-        text: "Rows are printed at the multiples of `N`, and always at the first and last step of a run; with 0 (as \
-            without the command) only there. `v_name` of an equal-style variable names the next \
-            step with a row each time one has come, from the clock alone: `logfreq(10,3,10)`, `stride(0,100,7)`.",
+        text: "",
         example: "thermo 2",
     },
 );
@@ -19,7 +18,7 @@ pub(super) const THERMO: Entry = (
 pub(super) const THERMO_STYLE: Entry = (
     "thermo_style",
     Doc {
-        syntax: Syntax::Written("thermo_style one|multi|yaml\nthermo_style custom column …"),
+        syntax: Syntax::Forms(Style::FORMS),
         summary: "Chooses the columns of the step table.",
         text: COLUMNS,
         example: "compute d all reduce max c_dmg\n\
@@ -28,9 +27,7 @@ pub(super) const THERMO_STYLE: Entry = (
     },
 );
 
-const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default; `multi` prints several lines per row with \
-    `etotal ke temp pe ebond eangle edihed eimp evdwl ecoul elong press`, `yaml` writes a YAML document with `step temp ke pe \
-    ebond eangle edihed eimp evdwl ecoul elong press`. Where the box follows the particles these three show `vol` too. A new \
+const COLUMNS: &str = "Where the box follows the particles `one`, `multi` and `yaml` show `vol` too. A new \
     `thermo_style` forgets formats, names and `norm` given before.\n\n\
     Columns of `custom`:\n\n\
     - steps and time: `step`, `elapsed` (steps of this run), `elaplong` (steps since `run … start`), `dt`, `time`, `cpu` \
@@ -53,28 +50,12 @@ const COLUMNS: &str = "`one` is `step temp epair emol etotal press`, the default
 pub(super) const THERMO_MODIFY: Entry = (
     "thermo_modify",
     Doc {
-        syntax: Syntax::Written(
-            "thermo_modify [norm yes|no] [flush yes|no] [line one|multi|yaml] [format …] [colname …] [temp ID] [press ID] [lost error|warn|ignore] [energy error|warn|ignore]",
-        ),
+        syntax: Syntax::Behind(Modify::GRAMMAR),
         summary: "Sets how the step table looks and what it uses.",
-        text: "- `norm`: energies per particle; without it yes in `units lj` and no elsewhere;\n\
-            - `flush yes`: every row reaches the log file at once; without it rows that come faster than ten in a second wait for the next one;\n\
-            - `line`: the layout of the row;\n\
-            - `format line \"…\"` (one conversion per column), `format int %d`, `format float %g`, `format N %g` or `format \
-            NAME %g` (one column; N counts from 1, from -1 backwards), `format none`. A column's own format wins over `int` and \
-            `float`, these over `line`;\n\
-            - `colname N|NAME text` renames a column, `colname default` takes all names back;\n\
-            - `temp ID`, `press ID`: the computes behind temperature (also `ke`) and pressure; `temp` is also handed to the \
-            pressure, unless `press` follows;\n\
-            - `lost error` (default): a particle beyond a fixed face ends the run; `warn` and `ignore` delete it, with its \
-            bonds and contacts, when neighbour lists are built, and `warn` says so once;\n\
-            - `energy error` (default; `compat lammps`: `warn`): a run ends where energy has grown beyond reason, made from nothing, mostly by a \
+        text: "With `energy error` a run ends where energy has been made from nothing, mostly by a \
             time step that is too long. That is a mean speed beyond 10 times that of waves, by the stiffness of bonds and contacts, \
             and 1000 times that at the run's beginning; among peridynamic solids on which no fix does work also a kinetic energy of 10⁶ \
-            times all energy at the beginning, if a row has shown it. It is looked at with each row and every 1000 steps;\n\
-            - `lost/bond error` (default): a bond of which one end is lost ends the run; `ignore` and `warn` continue without its \
-            force;\n\
-            - `warn` is read for LAMMPS' decks, and a note says that it has no effect.\n\n\
+            times all energy at the beginning, if a row has shown it. It is checked with each row and every 1000 steps.\n\n\
             Formats and names belong to the present columns: put the line behind `thermo_style`.",
         example: "thermo_style custom step pe ke\nthermo_modify norm no flush yes format float %20.12g format step %8d colname pe energy",
     },

@@ -24,10 +24,7 @@ pub struct Copies {
 
 impl Value for Copies {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("ID", Kind::Molecule),
-            Part::bare("SEED", Kind::Whole),
-        ],
+        parts: &[Part::bare("ID", Kind::Molecule), Part::bare("SEED", Kind::Whole)],
         ..*Grammar::NONE
     });
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {

@@ -11,7 +11,7 @@ use perigrain_lang::{Args, Word};
 use perigrain_styles::common::{domain, on_particles};
 use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style};
-pub use reel::{Reel, Rerun};
+pub use reel::{RERUN, Reel, Rerun};
 use snapshot::{enter, particles};
 use std::collections::BTreeMap;
 

@@ -1,12 +1,13 @@
 //! Snapshots of several dumps one after the other, as `rerun` takes them.
 
 use super::super::data::dump;
-use super::Wish;
 use super::snapshot::{enter, particles};
+use super::{Wanted, Wish};
 use perigrain_base::diag::{Code, Result, Source, fail};
 use perigrain_geometry::text::{Lines, comes, find};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
+use perigrain_styles::words::{Grammar, Keyword, Kind, Part, Words, read};
 use perigrain_world::World;
 use std::sync::Arc;
 
@@ -59,32 +60,71 @@ pub struct Rerun {
     pub post: bool,
 }
 
+/// The words of `rerun` before `dump`.
+#[derive(Words)]
+struct Snapshots {
+    /// Text dumps, read one after the other.
+    #[word(name = "FILE", what = "a dump to read", least = 1, kind = Kind::File)]
+    files: Vec<Word>,
+    /// Snapshots before this step are left out.
+    #[word(keyword, name = "N", what = "the first step", from = 0, default = 0)]
+    first: i64,
+    /// Snapshots behind this step are left out.
+    #[word(keyword, name = "N", what = "the last step", from = 0, default = i64::MAX, shown = "no limit")]
+    last: i64,
+    /// Steps of snapshots must be multiples of it; 0 takes all.
+    #[word(keyword, name = "N", what = "the interval of snapshots", from = 0, default = 0)]
+    every: i64,
+    /// After the first snapshot one in `skip` is looked at.
+    #[word(
+        keyword,
+        name = "N",
+        what = "the number of snapshots for one that is read",
+        from = 1,
+        default = 1
+    )]
+    skip: i64,
+    /// The first step of ramps, as for `run`.
+    #[word(keyword, name = "N", what = "the first step of ramps", from = 0, shown = "first")]
+    start: Option<i64>,
+    /// The last step of ramps, as for `run`; no snapshot may be behind it.
+    #[word(keyword, name = "N", what = "the last step of ramps", from = 0, shown = "last")]
+    stop: Option<i64>,
+    /// Whether tables of time follow.
+    #[word(keyword, default = false)]
+    post: bool,
+}
+
+/// The end of a `rerun` line.
+const FIELDS_OF_DUMPS: &Grammar = &Grammar {
+    parts: &[],
+    keywords: &[Keyword {
+        word: "dump",
+        values: &[Part::bare("fields", Kind::Words(Wanted::GRAMMAR))],
+        about: "Must stand there: the fields to read and how, as for `read_dump`.",
+        default: "",
+        repeats: false,
+    }],
+    refused: &[],
+};
+
+/// A whole `rerun` line.
+pub const RERUN: Grammar = Grammar {
+    parts: &[Part::All(Snapshots::GRAMMAR), Part::All(FIELDS_OF_DUMPS)],
+    keywords: &[],
+    refused: &[],
+};
+
 impl Rerun {
     /// Reads the words of `rerun`.
     ///
     /// # Errors
     /// Every mistake in the line.
     pub fn read(a: &mut Args, cx: &BuildCx) -> Result<Self> {
-        const KEYS: [&str; 8] = ["first", "last", "every", "skip", "start", "stop", "post", "dump"];
-        let mut files = vec![a.expect("a dump to read")?.clone()];
-        while let Some(word) = a.peek().filter(|w| !KEYS.contains(&w.text.as_str())) {
-            files.push(word.clone());
-            a.next();
-        }
-        let (mut first, mut last, mut every, mut skip) = (0, i64::MAX, 0, 1);
-        let (mut start, mut stop, mut post) = (None, None, false);
-        let wish = loop {
-            match a.expect("the keyword `dump` with the fields to read")?.text.as_str() {
-                "first" => first = a.integer_from(0, "the first step")?,
-                "last" => last = a.integer_from(0, "the last step")?,
-                "every" => every = a.integer_from(0, "the interval of snapshots")?,
-                "skip" => skip = a.integer_from(1, "the number of snapshots for one that is read")?,
-                "start" => start = Some(a.integer_from(0, "the first step of ramps")?),
-                "stop" => stop = Some(a.integer_from(0, "the last step of ramps")?),
-                "post" => post = a.flag("post")?,
-                _ => break Wish::read(a, cx)?,
-            }
-        };
+        let mut chosen = a.until(|word| FIELDS_OF_DUMPS.has(word));
+        let Snapshots { files, first, last, every, skip, start, stop, post } = read(&mut chosen, cx)?;
+        a.expect("the keyword `dump` with the fields to read")?;
+        let wish = Wish::read(a, cx)?;
         if last < first {
             return fail(
                 Code::BAD_VALUE,

@@ -137,10 +137,7 @@ pub struct Parts(pub Vec<Region>);
 
 impl Value for Parts {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("N", Kind::Whole),
-            Part::Many(&[Part::bare("ID", Kind::Region)], 2),
-        ],
+        parts: &[Part::bare("N", Kind::Whole), Part::Many(&[Part::bare("ID", Kind::Region)], 2)],
         ..*Grammar::NONE
     });
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {

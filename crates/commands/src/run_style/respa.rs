@@ -72,10 +72,7 @@ struct Levels(Vec<i64>);
 
 impl Value for Levels {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("N", Kind::Whole),
-            Part::Many(&[Part::bare("n", Kind::Whole)], 0),
-        ],
+        parts: &[Part::bare("N", Kind::Whole), Part::Many(&[Part::bare("n", Kind::Whole)], 0)],
         ..*Grammar::NONE
     });
     fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {

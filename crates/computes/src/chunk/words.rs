@@ -102,10 +102,7 @@ enum Most {
 /// A number of chunks, 0 for none, else with what it does.
 impl Value for Limit {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("N", Kind::Whole),
-            Part::Maybe(&[Part::bare("kind", Most::KIND)]),
-        ],
+        parts: &[Part::bare("N", Kind::Whole), Part::Maybe(&[Part::bare("kind", Most::KIND)])],
         keywords: &[],
         refused: &[],
     });

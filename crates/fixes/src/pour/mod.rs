@@ -114,7 +114,13 @@ struct Drift([[f64; 2]; 2], f64, Span);
 
 impl Value for Drift {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[Part::number("vxlo"), Part::number("vxhi"), Part::number("vylo"), Part::number("vyhi"), Part::number("vz")],
+        parts: &[
+            Part::number("vxlo"),
+            Part::number("vxhi"),
+            Part::number("vylo"),
+            Part::number("vyhi"),
+            Part::number("vz"),
+        ],
         keywords: &[],
         refused: &[],
     });

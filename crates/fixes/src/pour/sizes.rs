@@ -27,10 +27,7 @@ pub struct Shares(Vec<[f64; 2]>);
 
 impl Value for Shares {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("n", Kind::Whole),
-            Part::Many(&[Part::number("D"), Part::number("P")], 1),
-        ],
+        parts: &[Part::bare("n", Kind::Whole), Part::Many(&[Part::number("D"), Part::number("P")], 1)],
         keywords: &[],
         refused: &[],
     });

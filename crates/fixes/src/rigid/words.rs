@@ -112,13 +112,7 @@ pub struct Groups(pub Vec<GroupId>);
 
 impl Value for Groups {
     const KIND: Kind = Kind::Words(&Grammar {
-        parts: &[
-            Part::bare("N", Kind::Whole),
-            Part::Many(
-                &[Part::bare("group", Kind::Group)],
-                1,
-            ),
-        ],
+        parts: &[Part::bare("N", Kind::Whole), Part::Many(&[Part::bare("group", Kind::Group)], 1)],
         keywords: &[],
         refused: &[],
     });

@@ -33,10 +33,7 @@ pub const FORCE: Kind = Kind::Choice(&[
     style(
         "granular",
         "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
-        &[Part::Many(
-            &[Part::bare("MODELS", Kind::Text)],
-            1,
-        )],
+        &[Part::Many(&[Part::bare("MODELS", Kind::Text)], 1)],
     ),
     style("hooke", "The force of `pair_style gran/hooke`.", CLASSIC),
     style("hooke/history", "The force of `pair_style gran/hooke/history`.", CLASSIC),

@@ -12,7 +12,7 @@ pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
-    At, AtomVariable, Axis, BondType, Fraction, GlobalValue, MarsagliaSeed, NonNegative, Nullable, OneType,
+    At, AtomVariable, Axis, BondType, Fraction, GlobalValue, Idle, MarsagliaSeed, NonNegative, Nullable, OneType,
     Or, PerAtom, Positive, Reference, Seed, Steps, Turned, Types, Units, Value, VelocityAxis, Whole,
 };
 

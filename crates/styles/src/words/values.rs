@@ -8,6 +8,7 @@ use perigrain_base::math::body::{Quat, turn};
 use perigrain_lang::{Args, Param, RefKind, ValueRef, Word, blame};
 use perigrain_world::{GroupId, Key, Region, World};
 use std::f64::consts::PI;
+use std::marker::PhantomData;
 use std::path::PathBuf;
 
 /// What a word of a line, or a few words, can be read as.
@@ -368,6 +369,20 @@ impl Value for VelocityAxis {
     ]);
     fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         common::velocity_axis(args).map(Self)
+    }
+}
+
+/// A value that is read and not used.
+#[derive(Clone, Copy, Debug)]
+pub struct Idle<T>(PhantomData<T>);
+
+impl<T: Value> Value for Idle<T> {
+    const KIND: Kind = T::KIND;
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        T::value(what, args, cx).map(|_| Self(PhantomData))
+    }
+    fn begins(word: &Word) -> bool {
+        T::begins(word)
     }
 }
 

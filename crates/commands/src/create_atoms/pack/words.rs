@@ -6,9 +6,7 @@ use crate::create_atoms::words::Joined;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{
-    At, Grammar, Keyword, Kind, OneType, Or, Part, Seed, Value, Words,
-};
+use perigrain_styles::words::{At, Grammar, Keyword, Kind, OneType, Or, Part, Seed, Value, Words};
 
 /// Spheres in a region.
 #[derive(Words)]
@@ -192,10 +190,7 @@ impl Value for Mix {
         ],
         keywords: &[Keyword {
             word: "types",
-            values: &[Part::Many(
-                &[Part::bare("T", Kind::Types)],
-                1,
-            )],
+            values: &[Part::Many(&[Part::bare("T", Kind::Types)], 1)],
             about: "",
             default: "",
             repeats: false,
