@@ -10,6 +10,7 @@ mod manual;
 mod threads;
 #[path = "tilted/main.rs"]
 mod tilted;
+mod words;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -10,6 +10,9 @@ use std::process::{Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+#[path = "lsp/keywords.rs"]
+mod keywords;
+
 const DECK: &str = include_str!("scripts/scene.in");
 
 /// A client; notifications of the server are kept.

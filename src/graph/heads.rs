@@ -2,6 +2,7 @@
 
 use super::declaration::id_of;
 use perigrain_base::diag::Result;
+use perigrain_fixes::Counted;
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::compute::TemperatureOption;
@@ -174,7 +175,8 @@ pub const COMPUTE: Grammar = whole(&[Part::All(Compute::GRAMMAR), OF_STYLE]);
 pub const COMPUTE_MODIFY: Grammar =
     whole(&[Part::All(OfCompute::GRAMMAR), Part::All(<Each<TemperatureOption>>::GRAMMAR)]);
 /// A whole `fix_modify` line but for the words of styles.
-pub const FIX_MODIFY: Grammar = whole(&[Part::All(OfFix::GRAMMAR), Part::All(FixOptions::GRAMMAR)]);
+pub const FIX_MODIFY: Grammar =
+    whole(&[Part::All(OfFix::GRAMMAR), Part::All(FixOptions::GRAMMAR), Part::All(Counted::GRAMMAR)]);
 /// A whole `dump` line.
 pub const DUMP: Grammar = whole(&[Part::All(Dump::GRAMMAR), FILE, OF_STYLE]);
 /// A whole `write_dump` line.

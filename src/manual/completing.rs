@@ -117,7 +117,7 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         _ => {}
     }
     let Some((places, page)) = knowing::places(typed, known) else { return (0, vec![]) };
-    let slot = Slot { command, typed, text: page.doc.text, known, folder, word };
+    let slot = Slot { command, typed, known, folder, word };
     let mut out = slot.behind_region(page.written());
     let mut skip = 0;
     for offer in places.iter().flat_map(|place| &place.offers) {
@@ -126,29 +126,16 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         out.append(&mut names);
     }
     for place in places.iter().filter(|place| place.offers.is_empty()) {
-        for here in place.here.iter().filter(|here| !PLACES.contains(&here.as_str())) {
+        for here in &place.here {
             for one in here.trim_end_matches('…').split('|') {
                 let (s, mut names) = slot.names(one, &place.before);
                 skip = skip.max(s);
                 out.append(&mut names);
             }
         }
-        let faces = place.here.iter().any(|here| FACES.contains(&here.as_str()));
-        out.extend(of(
-            What::Keyword,
-            if command == "region" && faces { &["INF", "EDGE"][..] } else { &[] }.iter().copied(),
-        ));
-        let open = place.here.iter().any(|here| PLACES.contains(&here.as_str()));
-        out.extend(of(What::Keyword, open.then_some("NULL")));
     }
     (skip, out)
 }
-
-/// The ends of a region: unbounded, or at the box.
-const FACES: [&str; 8] = ["XLO", "XHI", "YLO", "YHI", "ZLO", "ZHI", "LO", "HI"];
-
-/// Where a wall lies, if it is there at all: numbers, and no words as they stand in syntax lines.
-const PLACES: [&str; 2] = ["lo", "hi"];
 
 /// Attributes of particles that formulas know.
 const ATTRIBUTES: [&str; 16] = [
@@ -160,7 +147,6 @@ const ATTRIBUTES: [&str; 16] = [
 struct Slot<'a> {
     command: &'a str,
     typed: &'a [&'a str],
-    text: &'a str,
     known: &'a Known,
     folder: &'a Path,
     word: &'a str,
@@ -175,11 +161,6 @@ impl Slot<'_> {
         }
         let named = |text: &String| Candidate { text: text.clone(), what: What::Named(Named::Region) };
         self.known.regions.iter().map(named).collect()
-    }
-
-    /// Whether the page lists keywords that may come one after the other.
-    fn text_repeats(&self) -> bool {
-        !knowing::keywords_in(self.text).is_empty()
     }
 
     /// What a declared word may become.
@@ -228,10 +209,6 @@ impl Slot<'_> {
             }
             (_, "STYLE" | "style") => (0, of(What::Style, knowing::styles(self.command))),
             (_, "attribute") => (0, [of(What::Attribute, ATTRIBUTES), values(self.known)].concat()),
-            // Behind the first keyword and its value others may come.
-            (_, "value") if before.starts_with("keyword") || self.text_repeats() => {
-                (0, [of(What::Keyword, knowing::keywords_in(self.text)), values(self.known)].concat())
-            }
             (_, "input" | "value") => (0, values(self.known)),
             (_, "NULL") => (0, of(What::Keyword, ["NULL"])),
             (_, "c_ID") => (0, values(self.known).into_iter().filter(|c| c.text.starts_with('c')).collect()),
@@ -239,7 +216,6 @@ impl Slot<'_> {
             (_, p) if p.starts_with("v_") => {
                 (0, values(self.known).into_iter().filter(|c| c.text.starts_with('v')).collect())
             }
-            (_, "KEYWORD" | "keyword") => (0, of(What::Keyword, knowing::keywords_in(self.text))),
             (_, p) if is_word(p) => (0, of(What::Keyword, [p])),
             _ => (0, vec![]),
         }

@@ -255,6 +255,22 @@ pub fn places(typed: &[&str], known: &Known) -> Option<(Vec<Place>, Page)> {
     Some((all.iter().filter(same).map(|e| e.form.place(typed)).collect(), entry.page))
 }
 
+/// Which of the words of a line are none that is declared for their places, in any form that fits the line as well as the best one;
+/// `None` for lines whose words are not declared.
+pub fn strays(words: &[&str], known: &Known) -> Option<(Vec<usize>, Page)> {
+    let entry = best(words, known)?;
+    let fit = entry.form.fit(words);
+    let same = |e: &&Entry| e.page.title() == entry.page.title() && e.form.fit(words) == fit;
+    let forms = FORMS.get(*words.first()?)?.iter().filter(same).map(|e| match &e.form {
+        Line::Declared(line) => Some(line.strays(words)),
+        Line::Written(_) => None,
+    });
+    let forms: Vec<Vec<usize>> = forms.collect::<Option<_>>()?;
+    let (first, others) = forms.split_first()?;
+    let everywhere = |k: &&usize| others.iter().all(|form| form.contains(k));
+    Some((first.iter().filter(everywhere).copied().collect(), entry.page))
+}
+
 /// What stands behind the words typed, from the form that fits them best, and that form's page.
 pub fn place(typed: &[&str], known: &Known) -> Option<(Place, Page)> {
     let entry = best(typed, known)?;
@@ -287,29 +303,6 @@ pub fn named(words: &[&str], k: usize) -> Option<Named> {
         return None;
     }
     each().find_map(|one| Named::of(one, &place.before, last, command))
-}
-
-/// Keywords that a page's text names behind "Keywords:" and the like, each the first word of something in backticks.
-pub fn keywords_in(text: &str) -> Vec<&str> {
-    let listed = text.split_once("eywords").and_then(|(_, rest)| {
-        let (head, list) = rest.split_once(':')?;
-        (head.len() < 60 && !head.contains('.')).then_some(list)
-    });
-    let Some(listed) = listed else { return vec![] };
-    // A list of items is a paragraph; within a sentence it ends with that.
-    let (listed, end) = match listed.trim_start_matches('\n') {
-        items if items.starts_with(['*', '-']) => (items, items.find("\n\n")),
-        _ => (listed, listed.find(". ")),
-    };
-    let (mut depth, mut words) = (0_i32, vec![]);
-    for (k, part) in listed[..end.unwrap_or(listed.len())].split('`').enumerate() {
-        if k % 2 == 0 {
-            depth += part.matches('(').count() as i32 - part.matches(')').count() as i32;
-        } else if depth == 0 && part.starts_with(|c: char| c.is_ascii_lowercase()) {
-            words.extend(part.split_whitespace().next());
-        }
-    }
-    words
 }
 
 /// A page's text on a word: from the word in backticks to the end of that sentence or item.
@@ -347,7 +340,7 @@ mod tests {
 
     #[test]
     fn the_style_typed_chooses_the_page() {
-        assert_eq!(rest("fix 1 all", None), "STYLE word…");
+        assert_eq!(rest("fix 1 all", None), "STYLE word …");
         assert_eq!(rest("fix 1 all viscous", None), "gamma [scale type ratio]");
         assert!(rest("region a sphere 0 0", None).starts_with("Z R"));
         assert!(rest("pair_coeff 1 1", Some("peri/pmb")).starts_with("c horizon"));
@@ -361,7 +354,7 @@ mod tests {
             let command = if e.page.kind == "command" { e.page.name } else { e.page.kind };
             let own = e.form.index_of(command) == Some(0);
             assert!(
-                own || ["pair_style", "bond_style", "dump", "command"].contains(&e.page.kind),
+                own || ["pair_style", "bond_style", "fix", "dump", "command"].contains(&e.page.kind),
                 "{}: {:?}",
                 e.page.title(),
                 e.form
@@ -390,16 +383,6 @@ mod tests {
         assert_eq!(of("fix 1 all viscous 1.0 scale").as_deref(), Some("[scale type ratio]"));
         assert_eq!(of("region a sphere 0").as_deref(), Some("Y"));
         assert_eq!(of("region").as_deref(), Some("ID"));
-    }
-
-    #[test]
-    fn keywords_are_listed_in_a_sentence_or_as_items() {
-        assert_eq!(keywords_in("Keywords: `a N` (0, `no`), `b`. Then `c`."), ["a", "b"]);
-        assert_eq!(
-            keywords_in("Keywords, here:\n\n* `size W` pixels, `up x`;\n* `map NAME`.\n\n`c`"),
-            ["size", "up", "map"]
-        );
-        assert!(keywords_in("No such list: `a`").is_empty());
     }
 
     #[test]

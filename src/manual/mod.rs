@@ -9,6 +9,7 @@ pub mod syntax;
 pub mod walk;
 
 use crate::graph::catalogue::Tables;
+use crate::graph::heads::FIX_MODIFY;
 use perigrain_dumps::DUMPS;
 use perigrain_styles::words::{Form, Syntax};
 use perigrain_styles::{Doc, Style};
@@ -112,10 +113,10 @@ fn gathered() -> Vec<Page> {
     fn of<S: Style + ?Sized>(kind: &'static str, table: &[&S]) -> Vec<Page> {
         table.iter().map(|s| Page { kind, name: s.name(), doc: s.doc() }).collect()
     }
-    fn own(kind: &'static str, table: &[pages::Entry]) -> Vec<Page> {
-        table.iter().map(|&(name, doc)| Page { kind, name, doc: with_dumps(name, doc) }).collect()
-    }
     let tables = Tables::default();
+    let own = |kind: &'static str, table: &[pages::Entry]| -> Vec<Page> {
+        table.iter().map(|&(name, doc)| Page { kind, name, doc: with_options(name, doc, &tables) }).collect()
+    };
     [
         own("topic", pages::TOPICS),
         of("command", &tables.commands),
@@ -129,15 +130,22 @@ fn gathered() -> Vec<Page> {
     .concat()
 }
 
-/// The page of `dump_modify` with its lines: what all dumps have, and what each style adds. Other pages stay as they are.
-fn with_dumps(name: &str, doc: Doc) -> Doc {
-    if name != "dump_modify" {
-        return doc;
+/// The pages of `dump_modify`, `fix_modify` and `peri_modify` with all their lines: what all dumps or fixes have, and what each style
+/// adds. Other pages stay as they are.
+fn with_options(name: &'static str, doc: Doc, tables: &Tables) -> Doc {
+    match name {
+        "dump_modify" => with_forms(name, perigrain_dumps::MODIFIED.to_vec(), &tables.dumps, doc),
+        "fix_modify" => with_forms(name, vec![Form::headed(name, &FIX_MODIFY)], &tables.fixes, doc),
+        "peri_modify" => with_forms(name, vec![], &tables.pairs, doc),
+        _ => doc,
     }
-    let mut all = perigrain_dumps::MODIFIED.to_vec();
-    for dump in DUMPS {
-        let Syntax::Forms(forms) = dump.doc().syntax else { continue };
-        for form in forms.iter().filter(|form| !form.head.is_empty()) {
+}
+
+/// The page of a command with its lines that stand on the pages of styles.
+fn with_forms<S: Style + ?Sized>(name: &str, mut all: Vec<Form>, styles: &[&S], doc: Doc) -> Doc {
+    for style in styles {
+        let Syntax::Forms(forms) = style.doc().syntax else { continue };
+        for form in forms.iter().filter(|form| form.head.split(' ').next() == Some(name)) {
             if !all.contains(form) {
                 all.push(*form);
             }

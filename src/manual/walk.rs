@@ -45,6 +45,8 @@ struct Walk<'a> {
     within: Option<usize>,
     /// The words of which one stands behind the part in order: they end lists in it.
     behind: &'static [Alternative],
+    /// Which words typed are none that may stand there.
+    strays: Vec<usize>,
 }
 
 impl Declared {
@@ -62,6 +64,11 @@ impl Declared {
     /// The words before what is declared.
     pub fn head(&self) -> &[String] {
         &self.head
+    }
+
+    /// The words that are declared.
+    pub fn grammar(&self) -> &'static Grammar {
+        self.grammar
     }
 
     /// What may stand behind the words typed.
@@ -100,6 +107,13 @@ impl Declared {
         (words, within.map(|k| self.head.len() + k))
     }
 
+    /// Which of the words typed are none that is declared for their places.
+    pub fn strays(&self, typed: &[&str]) -> Vec<usize> {
+        let n = self.head.len();
+        let walk = self.walk(typed.get(n..).unwrap_or_default());
+        walk.strays.iter().map(|k| n + k).collect()
+    }
+
     fn walk<'a>(&self, typed: &'a [&'a str]) -> Walk<'a> {
         let mut walk = Walk {
             typed,
@@ -109,6 +123,7 @@ impl Declared {
             rest: vec![],
             within: None,
             behind: &[],
+            strays: vec![],
         };
         walk.line();
         walk
@@ -146,7 +161,10 @@ impl Walk<'_> {
         let mut used: Vec<&str> = vec![];
         while let Some(word) = self.typed.get(self.at) {
             self.at += 1;
-            let Some(k) = all.iter().position(|k| k.word == *word) else { continue };
+            let Some(k) = all.iter().position(|k| k.word == *word) else {
+                self.strays.push(self.at - 1);
+                continue;
+            };
             used.push(all[k].word);
             if !self.along(&all[k].values.iter().collect::<Vec<_>>()) {
                 self.within = Some(parts.len() + k);
@@ -172,7 +190,7 @@ impl Walk<'_> {
             let passed = match part {
                 Part::Word(word) => self.word(word),
                 Part::Maybe(inner) => {
-                    if self.at_keyword() {
+                    if self.at_keyword() || !self.at_first(inner) {
                         continue;
                     }
                     self.some(inner)
@@ -204,9 +222,17 @@ impl Walk<'_> {
         }
     }
 
+    /// Whether parts may begin here: the line ends, or a word stands there that may be their first one.
+    fn at_first(&self, parts: &[Part]) -> bool {
+        match (self.typed.get(self.at), parts.first()) {
+            (Some(word), Some(Part::Word(place))) => may_be(place.kind, word),
+            _ => true,
+        }
+    }
+
     fn many(&mut self, parts: &'static [Part], least: usize) -> bool {
         let mut count = 0;
-        while !self.ended() && !self.at_keyword() {
+        while !self.ended() && !self.at_keyword() && (count < least || self.at_first(parts)) {
             if !self.along(&parts.iter().collect::<Vec<_>>()) {
                 return false;
             }
@@ -235,7 +261,10 @@ impl Walk<'_> {
                 self.at += 1;
                 match all.iter().find(|a| a.word == word) {
                     Some(one) => self.along(&one.parts.iter().collect::<Vec<_>>()),
-                    None => true,
+                    None => {
+                        self.strays.push(self.at - 1);
+                        true
+                    }
                 }
             }
             Kind::Words(grammar) => self.nested(grammar),
@@ -294,6 +323,17 @@ impl Walk<'_> {
     }
 }
 
+/// Whether a word may be the first one of a kind, as far as the kind has words of its own.
+fn may_be(kind: Kind, word: &str) -> bool {
+    match kind {
+        Kind::Choice(_) => kind.has(word),
+        Kind::Reference => word.starts_with("v_"),
+        Kind::Or(first, second) => may_be(*first, word) || may_be(*second, word),
+        Kind::OrNull(inner) => word == "NULL" || may_be(*inner, word),
+        _ => true,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -342,6 +382,14 @@ mod tests {
         check("fix 1 all ball 1 a side near 2", &["scale"], "[scale R R]");
         check("fix 1 all ball 1 a scale 2", &["R"], "R");
         check("fix 1 all ball 1 a scale 2 3 side in", &["scale"], "[scale R R]");
+    }
+
+    #[test]
+    fn words_without_a_place_are_strays() {
+        let line = Declared::new(&Form::behind(&LINE), "fix ID group ball");
+        let strays = |typed: &str| line.strays(&typed.split_whitespace().collect::<Vec<_>>());
+        assert!(strays("fix 1 all ball 1 a b side near 2").is_empty());
+        assert_eq!(strays("fix 1 all ball 1 a side far scale 1 2 wrong"), [7, 11]);
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! fix addforce: a force added to each particle.
 
-use super::{AtomReference, Facts, Fix, FixStyle, Minimizing, RegionId};
+use super::{AtomReference, Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish, unwrapped};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, PerAtom, Syntax, Words, read};
+use perigrain_styles::words::{At, Form, PerAtom, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{BOX, F, IMAGE, MASK, REGIONS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -20,7 +20,9 @@ impl Style for AddForce {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+            ),
             summary: "Adds a force to each particle of the group.",
             text: "Acts in the setup of a run too. `fix_modify ID virial yes` adds Σ f x (unwrapped) to the virial of \
                    pressures.\n\n\
@@ -125,11 +127,9 @@ impl Fix for Declared {
         Ok(vec![op.one_by_one().with_sums().when(when).boxed()])
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        match args.eat("virial") {
-            true => args.flag("virial").map(|yes| self.virial = yes),
-            false => super::no_option(args),
-        }
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
+        Ok(())
     }
 
     fn shape(&self) -> Shape {

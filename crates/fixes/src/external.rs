@@ -1,12 +1,12 @@
 //! fix external: forces from the host program of the session.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, Virial, options};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Syntax, Words, read};
+use perigrain_styles::words::{Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{COLUMNS, F, FACTS, MASK, SLOTS, TAG, TALLY, X};
 use perigrain_world::outside::{Each, HostCall, HostValues};
@@ -98,7 +98,9 @@ impl Style for External {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Options::GRAMMAR)] },
+            ),
             summary: "Adds forces that a program which hosts the run gives, such as a script in Python.",
             text: "Forces stay with their particles until they are written anew; those of new particles are 0. In \
                    minimizations the function is called at every evaluation and must say the energy of its forces. \
@@ -140,6 +142,23 @@ enum Mode {
     /// The program writes the forces between commands (`lmp.numpy.fix_external_get_force(ID)`).
     #[word("pf/array")]
     Array,
+}
+
+/// The options of `fix_modify`.
+#[derive(Words)]
+struct Options {
+    #[word(flatten)]
+    counts: Virial,
+    /// How many values of the program the fix offers.
+    #[word(keyword, name = "N", with = length, kind = Kind::Whole)]
+    vector: Option<usize>,
+}
+
+fn length(args: &mut Args, _: &BuildCx) -> Result<usize> {
+    match args.eat("0") {
+        true => Ok(0),
+        false => args.count("the number of values that the program sets", 4.0 * size_of::<f64>() as f64),
+    }
 }
 
 impl FixStyle for External {
@@ -222,19 +241,10 @@ impl Fix for Declared {
         Ok(vec![op.boxed()])
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        if args.eat("virial") {
-            self.virial = args.flag("virial")?;
-        } else if args.eat("vector") {
-            self.length = match args.eat("0") {
-                true => 0,
-                false => {
-                    args.count("the number of values that the program sets", 4.0 * size_of::<f64>() as f64)?
-                }
-            };
-        } else {
-            return super::no_option(args);
-        }
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let Options { counts, vector } = options(args, cx)?;
+        self.virial = counts.virial.unwrap_or(self.virial);
+        self.length = vector.unwrap_or(self.length);
         Ok(())
     }
 

@@ -1,15 +1,17 @@
 //! fix langevin: friction and random forces of a heat bath.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::rng::Marsaglia;
 use perigrain_base::math::vec3::{Vec3, dot};
-use perigrain_lang::{Args, Param, RefKind, ValueRef};
+use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::ledger::COUPLED;
 use perigrain_styles::matter::{Masses, check_masses, publish, sum};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Kind, PerAtom, Positive, Syntax, Types, Value, Words, read};
+use perigrain_styles::words::{
+    Alternative, At, Form, Kind, PerAtom, Positive, Syntax, Types, Value, Words, read,
+};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{
     COLUMNS, F, KIND, MASK, MASS, MEMO, OMEGA, RADIUS, RANK, SLOTS, TORQUE, TYPE_MASS, V,
@@ -30,7 +32,9 @@ impl Style for Langevin {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Options::GRAMMAR)] },
+            ),
             summary: "Friction and random forces of a bath of some temperature.",
             text: "f ← f − m/damp v + √(24 k_B T m/(damp Δt)) (u − ½), with u uniform between 0 and 1 for each particle \
                    and direction. T goes from Tstart to Tstop during a run (`run … start stop`). Something else must \
@@ -99,6 +103,14 @@ impl Value for No {
         }
         Ok(Self(no))
     }
+}
+
+/// The options of `fix_modify`.
+#[derive(Words)]
+struct Options {
+    /// A temperature, without effect: one that takes a flow away is refused.
+    #[word(keyword, name = "C", what = "the ID of a temperature", kind = Kind::Compute)]
+    temp: Option<Word>,
 }
 
 impl FixStyle for Langevin {
@@ -390,10 +402,7 @@ impl Fix for Declared {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        if !args.eat("temp") {
-            return super::no_option(args);
-        }
-        let word = args.expect("the ID of a temperature")?;
+        let Some(word) = options::<Options>(args, cx)?.temp else { return Ok(()) };
         let r = ValueRef { kind: RefKind::Compute, name: word.text.clone(), index: vec![], span: word.span };
         cx.value(&r, false)?;
         if cx.shape(&r).is_some_and(|s| s.flow) {

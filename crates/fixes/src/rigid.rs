@@ -14,7 +14,7 @@ mod words;
 
 pub use nve::{RigidNve, RigidNveSmall};
 
-use super::{Facts, Fix, FixStyle, Moves, no_option};
+use super::{Facts, Fix, FixStyle, MODIFY, Moves, Virial, options};
 use bodies::Split;
 use gravity::Weight;
 use mold::Mold;
@@ -26,7 +26,7 @@ use perigrain_styles::ledger::BODY_ENERGY;
 use perigrain_styles::matter::check_masses;
 use perigrain_styles::rigid_bodies::{bodies_key, body_column};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Syntax, Words, read_or};
+use perigrain_styles::words::{At, Form, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Motion, SealCx, Shape, Style};
 use perigrain_world::field::{
     self, BOX, F, IMAGE, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA, RADIUS, RIGID, SLOTS, TAG, TALLY,
@@ -65,7 +65,9 @@ impl Style for Rigid {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Large::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Large::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+            ),
             summary: "Lets groups of particles move as rigid bodies.",
             text: "Each body needs two particles at least. Mass, centre and moments of inertia are those of the \
                    particles, spheres being solid; overlaps count twice. Forces and torques on a body are the sums of \
@@ -106,7 +108,9 @@ impl Style for RigidSmall {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Small::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Small::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+            ),
             summary: "Lets molecules move as rigid bodies, as many as there are.",
             text: "As `fix rigid`, without its array. Particles that join the group during a run become bodies of their \
                    own, molecule by molecule, with the next rebuild of neighbour lists. In `infile` the number of a \
@@ -456,12 +460,9 @@ impl Fix for Declared {
         Ok(())
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        if args.eat("virial") {
-            self.virial = args.flag("virial")?;
-            return Ok(());
-        }
-        no_option(args)
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
+        Ok(())
     }
 
     fn facts(&self, _: &World) -> Facts {

@@ -2,13 +2,13 @@
 
 use super::faces::{Face, Spot, Walls, check};
 use super::wall_law::{LAWS, Law, numbers};
-use super::{Facts, Fix, FixStyle, Minimizing, needs_spheres};
+use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, Virial, needs_spheres, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Alternative, At, Syntax, Units, Words, read};
+use perigrain_styles::words::{Alternative, At, Form, Syntax, Units, Words, read};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Shape, Style};
 use perigrain_world::field::{F, Fields, MASK, RADIUS, SLOTS, TALLY, X};
 use perigrain_world::{GroupId, World};
@@ -77,7 +77,14 @@ impl Style for FlatWall {
     fn doc(&self) -> Doc {
         let [text, example] = &PAGES[self.0];
         Doc {
-            syntax: Syntax::Behind(if self.is_morse() { Morses::GRAMMAR } else { Wells::GRAMMAR }),
+            syntax: match self.is_morse() {
+                true => Syntax::Forms(
+                    const { &[Form::behind(Morses::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+                ),
+                false => Syntax::Forms(
+                    const { &[Form::behind(Wells::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+                ),
+            },
             summary: "Flat walls that push and pull particles without friction.",
             text,
             example,
@@ -382,11 +389,9 @@ impl Fix for Declared {
         Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        match args.eat("virial") {
-            true => args.flag("virial").map(|yes| self.virial = yes),
-            false => super::no_option(args),
-        }
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
+        Ok(())
     }
 
     fn shape(&self) -> Shape {

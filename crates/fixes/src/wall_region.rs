@@ -1,14 +1,14 @@
 //! fix wall/region: the surface of a region as a wall with normal forces and no friction.
 
 use super::wall_law::Law;
-use super::{Facts, Fix, FixStyle, Minimizing, RegionId};
+use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, scale};
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Chosen, add_virial, change_forces, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Syntax, Words, read};
+use perigrain_styles::words::{At, Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::field::{F, MASK, RADIUS, REGIONS, SLOTS, TAG, TALLY, X};
 use perigrain_world::region::{Look, Near};
@@ -24,7 +24,9 @@ impl Style for WallRegion {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Virial::GRAMMAR)] },
+            ),
             summary: "The surface of a region as a smooth wall that pushes and pulls particles.",
             text: "A particle of the group whose centre is at a distance r < cutoff from the surface of the region feels the force −dE/dr \
                    along the line from the nearest point of the surface; each face that is so near acts, as do the planes of a block \
@@ -203,11 +205,9 @@ impl Fix for Declared {
         Ok(vec![op.one_by_one().with_sums().boxed()])
     }
 
-    fn modify(&mut self, args: &mut Args, _cx: &BuildCx) -> Result<()> {
-        match args.eat("virial") {
-            true => args.flag("virial").map(|yes| self.virial = yes),
-            false => super::no_option(args),
-        }
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
+        Ok(())
     }
 
     fn shape(&self) -> Shape {

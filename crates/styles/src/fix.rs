@@ -1,6 +1,7 @@
 //! What a fix is: a style that reads its line, and what it declares.
 
 use super::pair::{Deck, ToCome};
+use super::words::{At, Words, inner};
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
 use dyn_clone::DynClone;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
@@ -152,15 +153,44 @@ pub trait Fix: DynClone + Send {
     /// # Errors
     /// Unknown keywords; by default there are none.
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let span = args.here();
-        if args.eat("dynamic/dof") {
-            args.flag("dynamic/dof")?;
+        let Counted { dynamic_dof } = options(args, cx)?;
+        if let Some(At { span, .. }) = dynamic_dof {
             let text = "without effect: degrees of freedom are counted anew each time";
             cx.note(Diagnostic::note(Code::NO_EFFECT, span, text));
-            return Ok(());
         }
-        no_option(args)
+        Ok(())
     }
+}
+
+/// What stands before the options of `fix_modify` that belong to a style.
+pub const MODIFY: &str = "fix_modify ID";
+
+/// The option of fixes that have no others.
+#[derive(perigrain_words::Words)]
+pub struct Counted {
+    /// Read for LAMMPS' decks, without effect: degrees of freedom are counted anew each time; refused by fixes with options of their
+    /// own.
+    #[word(keyword = "dynamic/dof", name = "yes|no", what = "dynamic/dof", placed)]
+    dynamic_dof: Option<At<bool>>,
+}
+
+/// Whether a fix counts in pressures, for fixes that can.
+#[derive(perigrain_words::Words)]
+pub struct Virial {
+    /// Whether what the fix does counts in pressures.
+    #[word(keyword, name = "yes|no", what = "virial")]
+    pub virial: Option<bool>,
+}
+
+/// Reads options of `fix_modify` that a fix has.
+///
+/// # Errors
+/// Options that it does not have.
+pub fn options<T: Words>(args: &mut Args, cx: &BuildCx) -> Result<T> {
+    if args.peek().is_some_and(|word| !T::GRAMMAR.has(&word.text)) {
+        no_option(args)?;
+    }
+    inner(args, cx)
 }
 
 dyn_clone::clone_trait_object!(Fix);

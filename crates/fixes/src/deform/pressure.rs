@@ -1,10 +1,11 @@
 //! fix deform/pressure: a deforming box whose lengths and tilts are controlled by pressures.
 
 use super::{Declared, Fix, FixStyle, Handling, Motion, declared, lean};
+use crate::{MODIFY, options};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Param, RefKind, ValueRef, Word};
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::words::{At, Or, Syntax, Words, read_or};
+use perigrain_styles::words::{At, Form, Or, Syntax, Words, read_or};
 use perigrain_styles::{BuildCx, Doc, Reading, SealCx, Style};
 use perigrain_world::World;
 
@@ -17,7 +18,9 @@ impl Style for DeformPressure {
     }
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(
+                const { &[Form::behind(Line::GRAMMAR), Form::headed(MODIFY, Options::GRAMMAR)] },
+            ),
             summary: "A deforming box of which pressures steer lengths and tilts.",
             text: "As [fix deform](fix_deform.md), with pressures that steer lengths and tilts. N steps lie between two \
                    changes; the pressure is the one at the end of the step.\n\n\
@@ -136,6 +139,14 @@ fn not_of_a_box(word: &Word) -> Option<Diagnostics> {
     Some(d.help("steer x, y and z by `pressure` or `pressure/mean`, with `couple xyz`").into())
 }
 
+/// The options of `fix_modify`.
+#[derive(Words)]
+struct Options {
+    /// The compute of the pressure that takes the place of the fix's own.
+    #[word(keyword, name = "C", what = "the ID of a compute of a pressure", kind = Kind::Compute)]
+    press: Option<Word>,
+}
+
 impl FixStyle for DeformPressure {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         let line: Line = read_or(args, cx, not_of_a_box)?;
@@ -202,10 +213,7 @@ impl Controls {
                 .help("use `compute ID all pressure T` with that temperature, and `fix_modify ID press` with it")
                 .into());
         }
-        if !args.eat("press") {
-            return crate::no_option(args);
-        }
-        let word = args.expect("the ID of a compute of a pressure")?;
+        let Some(word) = options::<Options>(args, cx)?.press else { return Ok(()) };
         if let Some(style) = cx.names.compute_style(&word.text)
             && style != "pressure"
         {
