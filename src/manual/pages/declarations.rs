@@ -72,9 +72,8 @@ pub(super) const BOND_COEFF: Entry = (
 pub(super) const PERI_MODIFY: Entry = (
     "peri_modify",
     Doc {
-        syntax: Syntax::Written(
-            "peri_modify [force density|newton] [volume lammps|none|full] [surface no|energy|tensor] [horizon lattice|own] [nofail region ID]…",
-        ),
+        // The lines stand on the pages of the pair styles.
+        syntax: Syntax::Forms(&[]),
         summary: "Sets options of the peridynamic pair styles.",
         text: "`force density` keeps LAMMPS' force densities with the density in the place of mass; `newton` makes forces \
             true forces and masses ρV, so that grains and bodies exchange momentum and energies add up in one scene. \
