@@ -33,10 +33,12 @@ pub const FORCE: Kind = Kind::Choice(&[
     style(
         "granular",
         "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
-        &[Part::Many(
-            &[Part::Word(Placeholder { name: "MODELS", kind: Kind::Text, about: "", unit: "" })],
-            1,
-        )],
+        &[Part::Word(Placeholder {
+            name: "MODELS",
+            kind: Kind::Words(words::Models::GRAMMAR),
+            about: "",
+            unit: "",
+        })],
     ),
     style("hooke", "The force of `pair_style gran/hooke`.", CLASSIC),
     style("hooke/history", "The force of `pair_style gran/hooke/history`.", CLASSIC),

@@ -49,7 +49,7 @@ struct Line {
     #[word(flatten)]
     springs: Springs,
     /// Whether forces feel the volume about the ends, which sets Poisson's ratio.
-    #[word(keyword = "volume/factor")]
+    #[word(keyword = "volume/factor", shown = "no")]
     volume: bool,
 }
 

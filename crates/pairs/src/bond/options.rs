@@ -11,7 +11,7 @@ use perigrain_world::World;
 #[derive(Words)]
 pub struct Breaking {
     /// Whether pair forces act between bonded particles, too.
-    #[word(keyword = "overlay/pair")]
+    #[word(keyword = "overlay/pair", shown = "no")]
     overlay: bool,
     /// Whether bonds break.
     #[word(keyword = "break", what = "break", placed, shown = "yes")]
@@ -30,7 +30,7 @@ pub struct Springs {
     #[word(keyword, default = true)]
     smooth: bool,
     /// Whether stiffnesses are divided by the length at rest.
-    #[word(keyword)]
+    #[word(keyword, shown = "no")]
     normalize: bool,
 }
 

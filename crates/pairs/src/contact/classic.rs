@@ -40,14 +40,15 @@ pub struct Numbers {
     /// The coefficient of friction xmu.
     #[word(with = friction, kind = Kind::Number)]
     xmu: f64,
-    #[word(with = damps, kind = Kind::Choice(FLAGS))]
+    /// What damping there is across the normal.
+    #[word(with = damps, kind = Kind::Models(FLAGS))]
     dampflag: bool,
 }
 
 /// The values of `dampflag`.
 const FLAGS: &[Alternative] = &[
-    Alternative { word: "0", about: "No damping across the normal.", parts: &[] },
-    Alternative { word: "1", about: "gamma_t counts.", parts: &[] },
+    Alternative { word: "0", about: "None.", parts: &[] },
+    Alternative { word: "1", about: "That of gamma_t.", parts: &[] },
 ];
 
 /// Where the arms of friction end.

@@ -7,29 +7,20 @@ use perigrain_contact::driver::{Average, Curvature};
 use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Rolling, Twisting};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{Words, read};
+use perigrain_styles::words::{Kind, Value, Words, read};
 
-/// The words of a contact model.
+/// The words of a contact model between particles.
 #[derive(Words)]
 pub struct Line {
-    #[word(name = "NORMAL")]
-    normal: Law,
-    #[word(keyword, name = "MODEL", shown = "required")]
-    tangential: Option<Sliding>,
-    #[word(keyword, name = "MODEL", like = Dampings, default = Damping::default())]
-    damping: Damping,
-    #[word(keyword, name = "MODEL", like = Rollings, default = Rolling::None, shown = "none")]
-    rolling: Rolling,
-    #[word(keyword, name = "MODEL", like = Twistings, default = Twisting::None, shown = "none")]
-    twisting: Twisting,
-    #[word(keyword, name = "MODEL", like = Heating, default = Heat::None, shown = "none")]
-    heat: Heat,
-    /// Cuts the force along the normal off at zero.
-    #[word(flag, placed)]
-    limit_damping: Option<Span>,
-    /// Springs turn with the normal of the middle of the step.
-    #[word(flag, placed)]
-    synchronized_verlet: Option<Span>,
+    #[word(flatten)]
+    models: Models,
+    #[word(flatten)]
+    meeting: Meeting,
+}
+
+/// Words about particles that meet, which a wall has no use for.
+#[derive(Words)]
+struct Meeting {
     /// The cutoff, which sets the reach of the neighbour list by hand [length].
     #[word(keyword, name = "C", positive)]
     cutoff: Option<f64>,
@@ -40,6 +31,38 @@ pub struct Line {
     #[word(keyword, like = Ends, default = Arm::Middle)]
     arms: Arm,
 }
+
+/// The words of a contact model, of a wall too.
+#[derive(Words)]
+pub struct Models {
+    #[word(name = "NORMAL")]
+    normal: Law,
+    /// The friction against sliding.
+    #[word(keyword, name = "MODEL", shown = "required")]
+    tangential: Option<Sliding>,
+    /// The damping along the normal.
+    #[word(keyword, name = "MODEL", like = Dampings, default = Damping::default(), shown = "viscoelastic")]
+    damping: Damping,
+    /// The resistance to rolling.
+    #[word(keyword, name = "MODEL", like = Rollings, kind = ROLLING, default = Rolling::None, shown = "none")]
+    rolling: Rolling,
+    /// The resistance to twisting.
+    #[word(keyword, name = "MODEL", like = Twistings, kind = TWISTING, default = Twisting::None, shown = "none")]
+    twisting: Twisting,
+    /// The heat that flows.
+    #[word(keyword, name = "MODEL", like = Heating, kind = HEAT, default = Heat::None, shown = "none")]
+    heat: Heat,
+    /// Cuts the force along the normal off at zero.
+    #[word(flag, placed)]
+    limit_damping: Option<Span>,
+    /// Springs turn with the normal of the middle of the step.
+    #[word(flag, placed)]
+    synchronized_verlet: Option<Span>,
+}
+
+const ROLLING: Kind = Kind::Models(Rollings::KIND.choices());
+const TWISTING: Kind = Kind::Models(Twistings::KIND.choices());
+const HEAT: Kind = Kind::Models(Heating::KIND.choices());
 
 /// By what the force of each contact is divided.
 #[derive(Words)]
@@ -80,9 +103,10 @@ enum Ends {
 /// Every mistake in the line.
 pub fn coeff(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Coeff> {
     let mut own = args.until(|word| ends.contains(&word));
-    let line: Line = read(&mut own, cx)?;
-    let Law { model: normal, word: first } = line.normal;
-    let Some(sliding) = line.tangential else {
+    let Line { models, meeting } = read(&mut own, cx)?;
+    let Meeting { cutoff, average, curvature, arms } = meeting;
+    let Law { model: normal, word: first } = models.normal;
+    let Some(sliding) = models.tangential else {
         return Err(Diagnostic::error(
             Code::MISSING_ARGUMENT,
             args.here(),
@@ -92,20 +116,19 @@ pub fn coeff(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Coeff> {
         .into());
     };
     let model = Model {
-        rolling: line.rolling,
-        twisting: line.twisting,
-        heat: line.heat,
-        limit_damping: line.limit_damping.is_some(),
-        arm: line.arms,
-        synchronized: line.synchronized_verlet.is_some(),
-        ..Model::new(normal, line.damping, sliding.tangential(&normal)?)
+        rolling: models.rolling,
+        twisting: models.twisting,
+        heat: models.heat,
+        limit_damping: models.limit_damping.is_some(),
+        arm: arms,
+        synchronized: models.synchronized_verlet.is_some(),
+        ..Model::new(normal, models.damping, sliding.tangential(&normal)?)
     };
-    let Line { average, curvature, cutoff, .. } = line;
     let c = Coeff { model, average, curvature, cutoff, span: first.span };
-    check_synchrony(&c.model, line.synchronized_verlet)?;
+    check_synchrony(&c.model, models.synchronized_verlet)?;
     check_mdr(&first, &c)?;
     check_restitution(&first, &c.model)?;
-    check_cohesion(&first, &c.model, line.limit_damping)?;
+    check_cohesion(&first, &c.model, models.limit_damping)?;
     Ok(c)
 }
 

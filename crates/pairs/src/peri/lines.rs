@@ -12,7 +12,9 @@ pub fn forms(law: &'static Style, own: &'static Grammar, options: bool) -> &'sta
     const COEFF: &str = "pair_coeff I J";
     let mut numbers = numbers(law);
     if law.unloading.is_some() {
-        let choice = Placeholder { name: "unloading", kind: Kind::Choice(unloading()), about: "", unit: "" };
+        let words = unloading().map(|word| Alternative { word, about: "", parts: &[] });
+        let kind = Kind::Choice(words.collect::<Vec<_>>().leak());
+        let choice = Placeholder { name: "unloading", kind, about: UNLOADING, unit: "" };
         numbers.push(Part::Maybe(vec![Part::Word(choice)].leak()));
     }
     let mut forms = vec![
@@ -90,11 +92,16 @@ pub fn keywords(law: &'static Style) -> Vec<Keyword> {
     });
     let common: &[Keyword] = if law.softens() { &[] } else { &[S00, ALPHA] };
     let form = law.bond_based.then_some(FORM);
-    [HORIZON].into_iter().chain(own).chain(form).chain(common.iter().copied()).collect()
+    let unloading = unloading().filter(|_| law.unloading.is_some());
+    let unloading =
+        unloading.map(|word| Keyword { word, values: &[], about: UNLOADING, default: "", repeats: false });
+    let own = [HORIZON].into_iter().chain(own);
+    own.chain(form).chain(common.iter().copied()).chain(unloading).collect()
 }
 
+const UNLOADING: &str = "What bonds that have flowed do on their way back; the last word of the line.";
+
 /// What bonds that flow do on their way back, as words.
-fn unloading() -> &'static [Alternative] {
-    let words = LAWS.iter().filter_map(|law| law.unloading);
-    words.map(|word| Alternative { word, about: "", parts: &[] }).collect::<Vec<_>>().leak()
+fn unloading() -> impl Iterator<Item = &'static str> {
+    LAWS.iter().filter_map(|law| law.unloading)
 }

@@ -11,17 +11,20 @@ use perigrain_world::Region;
 /// The words of `peri_modify`.
 #[derive(Words)]
 pub struct Line {
+    /// What forces are.
     #[word(keyword, like = Units, shown = "density, with materials newton")]
     force: Option<ForceUnit>,
     #[word(keyword, like = Volumes, shown = "lammps")]
     volume: Option<VolumeRule>,
     #[word(keyword, shown = "no", placed)]
     calibrate: Option<At<Calibrate>>,
-    /// How the stiffness of a bond depends on its length |ξ|: as 1, 1/|ξ| or exp(−|ξ|²/δ²).
+    /// How the stiffness of a bond depends on its length |ξ|: as 1/|ξ|, 1 or exp(−|ξ|²/δ²).
     #[word(keyword, like = Influences, shown = "one, of state-based laws inverse", placed)]
     influence: Option<At<Influence>>,
+    /// What makes up for bonds that lack at surfaces.
     #[word(keyword, shown = "no", placed)]
     surface: Option<At<Surface>>,
+    /// In which spacing horizons of materials count.
     #[word(keyword, shown = "lattice", placed)]
     horizon: Option<At<Spacing>>,
     /// Whether a broken bond still pushes with c s w V_j while it is shorter than at the start, so that crushed parts do not pass
@@ -92,7 +95,7 @@ enum Surface {
 #[derive(Clone, Copy, PartialEq, Words)]
 #[word(what = "spacing that horizons count in")]
 enum Spacing {
-    /// In that of the lattice.
+    /// In the spacing of the lattice.
     Lattice,
     /// In the spacing around each particle, the cube root of the mean volume of the particles within two edges of its own.
     Own,

@@ -55,7 +55,7 @@ pub enum Kind {
 
 impl Kind {
     /// The words that may stand there.
-    pub fn choices(&self) -> &'static [Alternative] {
+    pub const fn choices(&self) -> &'static [Alternative] {
         match self {
             Self::Choice(all) | Self::Models(all) => all,
             Self::Or(words, _) => words.choices(),

@@ -22,7 +22,7 @@ pub struct Style {
     #[word(flatten)]
     breaking: Breaking,
     /// Whether forces are multiplied with 1 − B⁴, B the share of the strength that is used up; energy is not kept then.
-    #[word(keyword)]
+    #[word(keyword, shown = "no")]
     smooth: bool,
 }
 
