@@ -147,7 +147,11 @@ impl Tables {
             table.iter().flat_map(|style| style.registrations()).copied()
         }
         let forces = of(&self.pairs).chain(of(&self.bonds));
-        of(&self.fixes).chain(of(&self.computes)).chain(of(&self.dumps)).chain(forces).chain(of(&self.commands))
+        of(&self.fixes)
+            .chain(of(&self.computes))
+            .chain(of(&self.dumps))
+            .chain(forces)
+            .chain(of(&self.commands))
     }
 }
 

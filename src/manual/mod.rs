@@ -10,7 +10,6 @@ pub mod walk;
 
 use crate::graph::catalogue::Tables;
 use crate::graph::heads::FIX_MODIFY;
-use perigrain_dumps::DUMPS;
 use perigrain_styles::words::{Form, Syntax};
 use perigrain_styles::{Doc, Style};
 use std::fmt::Write;

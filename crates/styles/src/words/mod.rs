@@ -12,8 +12,8 @@ pub use perigrain_base::diag::Result;
 pub use perigrain_lang::{Args, Word};
 pub use perigrain_words::Words;
 pub use values::{
-    At, AtomVariable, Axis, BondType, Fraction, GlobalValue, Idle, MarsagliaSeed, NonNegative, Nullable, OneType,
-    Or, PerAtom, Positive, Reference, Seed, Steps, Turned, Types, Units, Value, VelocityAxis, Whole,
+    At, AtomVariable, Axis, BondType, Fraction, GlobalValue, Idle, MarsagliaSeed, NonNegative, Nullable,
+    OneType, Or, PerAtom, Positive, Reference, Seed, Steps, Turned, Types, Units, Value, VelocityAxis, Whole,
 };
 
 use crate::common::{choice_or_refuse, left_over, not_here, unknown_style};
