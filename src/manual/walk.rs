@@ -269,7 +269,9 @@ impl Walk<'_> {
             }
             Kind::Words(grammar) => self.nested(grammar),
             Kind::OrNull(inner) if self.typed[self.at] != "NULL" => self.taken(*inner),
-            Kind::Or(words, other) => self.taken(*if words.has(self.typed[self.at]) { words } else { other }),
+            Kind::Or(words, other) => {
+                self.taken(*if is_one(*words, self.typed[self.at]) { words } else { other })
+            }
             _ => {
                 self.at += 1;
                 true
@@ -323,11 +325,18 @@ impl Walk<'_> {
     }
 }
 
+/// Whether a word is one of the words of a kind.
+fn is_one(kind: Kind, word: &str) -> bool {
+    match kind {
+        Kind::Reference => word.starts_with("v_"),
+        _ => kind.has(word),
+    }
+}
+
 /// Whether a word may be the first one of a kind, as far as the kind has words of its own.
 fn may_be(kind: Kind, word: &str) -> bool {
     match kind {
-        Kind::Choice(_) => kind.has(word),
-        Kind::Reference => word.starts_with("v_"),
+        Kind::Choice(_) | Kind::Models(_) | Kind::Reference => is_one(kind, word),
         Kind::Or(first, second) => may_be(*first, word) || may_be(*second, word),
         Kind::OrNull(inner) => word == "NULL" || may_be(*inner, word),
         _ => true,

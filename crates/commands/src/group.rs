@@ -5,7 +5,9 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param, ValueRef, Word};
 use perigrain_styles::common::{self, free_id, in_group, setting, whole};
 use perigrain_styles::surface::{check_volumes, choose};
-use perigrain_styles::words::{Alternative, At, AtomVariable, Forms, Kind, Part, Syntax, Value, Words};
+use perigrain_styles::words::{
+    Alternative, At, AtomVariable, Forms, Grammar, Kind, Part, Syntax, Value, Words,
+};
 use perigrain_styles::{ActCx, BuildCx, Doc, Style, UseKind};
 use perigrain_world::region::Variable;
 use perigrain_world::surface::{Rule, Surface};
@@ -209,7 +211,11 @@ impl Value for Numbers {
                 parts: &[Part::bare("A", Kind::Whole), Part::bare("B", Kind::Whole)],
             },
         ]),
-        &Kind::Text,
+        &Kind::Words(&Grammar {
+            parts: &[Part::Many(&[Part::bare("A", Kind::Text)], 1)],
+            keywords: &[],
+            refused: &[],
+        }),
     );
     fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
         numbers(args, what)

@@ -9,7 +9,9 @@ use change::{Change, Limit};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_styles::common::{self, bad_keyword, id_range, on_particles, variable_param};
-use perigrain_styles::words::{At, Each, Given, Keywords, Kind, Syntax, Types, Value, Words};
+use perigrain_styles::words::{
+    At, Each, Given, Grammar, Keyword, Keywords, Kind, Part, Syntax, Types, Value, Words,
+};
 use perigrain_styles::{BuildCx, Doc, Style};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::{GroupId, Region};
@@ -24,7 +26,7 @@ impl Style for Set {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Behind(WHOLE),
             summary: "Sets properties of the particles chosen: type, mass, density, diameter, volume, spin, place, velocity.",
             text: "Particles are chosen once for the whole line. A value is a number or an atom-style variable `v_name`. Of a `fix \
                    property/atom` any property can be set by its name (`i_NAME`, `d_NAME`, `temperature`).\n\n\
@@ -48,6 +50,19 @@ struct Line {
     #[word(flatten)]
     _changes: Each<Change>,
 }
+
+/// A whole line: properties of `fix property/atom` may be set, too.
+const WHOLE: &Grammar = &Grammar {
+    parts: &[Part::All(Line::GRAMMAR)],
+    keywords: &[Keyword {
+        word: "temperature",
+        values: &[Part::bare("T|v_name", Kind::Param)],
+        about: "The temperature, where `fix property/atom` gives particles one.",
+        default: "",
+        repeats: true,
+    }],
+    refused: &[],
+};
 
 /// Which particles are set.
 #[derive(Words)]

@@ -7,7 +7,7 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Kind, Syntax, Value, Words, read};
+use perigrain_styles::words::{Grammar, Kind, Part, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::GroupId;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
@@ -56,7 +56,8 @@ enum Capacity {
 struct Each(Vec<f64>);
 
 impl Value for Each {
-    const KIND: Kind = Kind::Number;
+    const KIND: Kind =
+        Kind::Words(&Grammar { parts: &[Part::Many(&[Part::number("cp")], 1)], keywords: &[], refused: &[] });
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let each = (1..=cx.world.types).map(|k| args.positive(&format!("the specific heat of type {k}")));
         each.collect::<Result<_>>().map(Self)

@@ -7,7 +7,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
 use perigrain_styles::common::variable_param;
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{At, Kind, Types, Value};
+use perigrain_styles::words::{At, Grammar, Kind, Part, Types, Value};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::{GroupId, Particles, World};
 
@@ -29,7 +29,14 @@ pub enum Factor {
 }
 
 impl Value for Factor {
-    const KIND: Kind = Kind::Text;
+    const KIND: Kind = Kind::Or(
+        &Kind::Reference,
+        &Kind::Words(&Grammar {
+            parts: &[Part::bare("type", Kind::Types), Part::number("ratio")],
+            keywords: &[],
+            refused: &[],
+        }),
+    );
     fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         if args.peek_text().starts_with("v_") {
             let by = variable_param(args, "the factor")?;

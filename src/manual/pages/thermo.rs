@@ -10,7 +10,7 @@ pub(super) const THERMO: Entry = (
     Doc {
         syntax: Syntax::Behind(Interval::GRAMMAR),
         summary: "Prints a row of the step table every N steps.",
-        text: "",
+        text: "The columns are those of `thermo_style`; `thermo_modify` sets how they look.",
         example: "thermo 2",
     },
 );

@@ -32,21 +32,21 @@ enum Quantity {
     Temperature,
 }
 
-/// Names, with the number of indices.
+/// Names, with the number of indices; `*` stands for all of them.
 const QUANTITIES: [(&str, (usize, Quantity)); 14] = [
     ("natoms", (0, Quantity::Count)),
     ("density", (0, Quantity::Density)),
     ("volume/fraction", (0, Quantity::Volume)),
-    ("momentum", (1, Quantity::Momentum)),
-    ("velocity", (1, Quantity::Velocity)),
-    ("momentum/grad", (2, Quantity::MomentumGradient)),
-    ("velocity/grad", (2, Quantity::VelocityGradient)),
-    ("strain/rate", (2, Quantity::StrainRate)),
-    ("stress", (2, Quantity::Stress)),
-    ("stress/ke", (2, Quantity::Kinetic)),
-    ("stress/contacts", (2, Quantity::Contacts)),
-    ("boundary/force", (1, Quantity::BoundaryForce)),
-    ("fabric", (2, Quantity::Fabric)),
+    ("momentum/*", (1, Quantity::Momentum)),
+    ("velocity/*", (1, Quantity::Velocity)),
+    ("momentum/grad/*", (2, Quantity::MomentumGradient)),
+    ("velocity/grad/*", (2, Quantity::VelocityGradient)),
+    ("strain/rate/*", (2, Quantity::StrainRate)),
+    ("stress/*", (2, Quantity::Stress)),
+    ("stress/ke/*", (2, Quantity::Kinetic)),
+    ("stress/contacts/*", (2, Quantity::Contacts)),
+    ("boundary/force/*", (1, Quantity::BoundaryForce)),
+    ("fabric/*", (2, Quantity::Fabric)),
     ("temperature", (0, Quantity::Temperature)),
 ];
 
@@ -69,6 +69,7 @@ impl Field {
         let dims = if flat { 2 } else { 3 };
         let mut bad = None;
         for (name, (rank, what)) in QUANTITIES {
+            let name = plain(name);
             let Some(rest) = word.text.strip_prefix(name) else { continue };
             let component = rest.strip_prefix('/').unwrap_or(rest);
             let one = |letters: &str| -> Option<Vec<usize>> {
@@ -111,14 +112,19 @@ impl Field {
     }
 }
 
+/// The name of a field without its indices.
+fn plain(name: &str) -> &str {
+    name.trim_end_matches("/*")
+}
+
 /// All columns that a word stands for.
 pub struct Columns(pub Vec<Field>);
 
 impl Value for Columns {
-    const KIND: Kind = Kind::Choice(NAMES);
+    const KIND: Kind = Kind::Or(&Kind::Choice(NAMES), &Kind::Text);
     fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
         let word = args.expect(what)?;
-        let known = QUANTITIES.iter().map(|q| q.0).chain(["boundary/atom", "boundary/fix"]);
+        let known = QUANTITIES.iter().map(|q| plain(q.0)).chain(["boundary/atom", "boundary/fix"]);
         let columns = Field::read(word, cx.world.settings.two_dimensional)?;
         columns.map(Self).ok_or_else(|| args.unknown(word, &known.collect::<Vec<_>>()))
     }

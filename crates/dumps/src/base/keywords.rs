@@ -5,7 +5,9 @@ use crate::attribute::attribute;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::args::blame;
 use perigrain_lang::{Args, RefKind, ValueRef, Word};
-use perigrain_styles::words::{Alternative, At, Kind, Or, Reference, Value, Words, alternatives};
+use perigrain_styles::words::{
+    Alternative, At, Grammar, Kind, Or, Part, Reference, Value, Words, alternatives,
+};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::{Key, Region};
 
@@ -79,11 +81,18 @@ pub struct Common {
     types: Option<Numeric>,
 }
 
+/// A name for each type.
+const NAMES: Kind = Kind::Words(&Grammar {
+    parts: &[Part::Many(&[Part::bare("NAME", Kind::Text)], 1)],
+    keywords: &[],
+    refused: &[],
+});
+
 /// The keywords of `dump_modify` that dumps of particles have.
 #[derive(Words)]
 pub struct OfParticles {
     /// One name for each type, for the attribute `element`.
-    #[word(keyword, name = "A…", with = names, kind = Kind::Text)]
+    #[word(keyword, name = "names", with = names, kind = NAMES)]
     element: Option<Vec<String>>,
     /// Positions are wrapped into the box first.
     #[word(keyword, what = "pbc")]
