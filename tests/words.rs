@@ -88,22 +88,35 @@ fn base(deck: &str, form: &Declared) -> Option<(String, usize)> {
     };
     let lines = raw_lines(deck, FileId(0));
     let line = lines.iter().filter(fits).next_back()?;
-    Some((deck[..line.words.last()?.span.end as usize].to_string(), line.words[0].span.start as usize))
+    let last = line.words.last()?;
+    let end = last.span.end as usize
+        + usize::from(last.quoted && deck[last.span.end as usize..].starts_with(['"', '\'']));
+    Some((deck[..end].to_string(), line.words[0].span.start as usize))
+}
+
+/// The ID of the last fix or dump of a deck, for `fix_modify` and `dump_modify`.
+fn last_id(deck: &str, modify: &str) -> String {
+    let kind = modify.trim_end_matches("_modify");
+    let lines = raw_lines(deck, FileId(0));
+    let last = lines.iter().map(texts).rfind(|words| words[0] == kind).map(|words| words[1].to_string());
+    last.unwrap_or_else(|| "1".to_string())
 }
 
 /// A deck that ends with a line of a form, made up where the example has none.
 fn based(page: &Page, form: &Declared) -> (String, usize) {
     let deck = deck(&page.title(), page.doc.example);
     base(&deck, form).unwrap_or_else(|| {
-        let head = form.head().iter().map(|word| match word.as_str() {
-            "ID" if form.head()[0].ends_with("_modify") => "1".to_string(),
+        let (first, others) = form.head().split_first().unwrap();
+        let head = others.iter().map(|word| match word.as_str() {
+            "ID" if first.ends_with("_modify") => last_id(&deck, first),
             "ID" => "made_up".to_string(),
             "group" => "all".to_string(),
             "N" => "2".to_string(),
+            "I" | "J" | "T" | "TYPE" => "1".to_string(),
             word => word.to_string(),
         });
-        let words: Vec<String> =
-            head.chain(form.grammar().in_order().into_iter().flat_map(|p| filled(&[*p]))).collect();
+        let parts = form.grammar().in_order().into_iter().flat_map(|part| filled(&[*part]));
+        let words: Vec<String> = std::iter::once(first.clone()).chain(head).chain(parts).collect();
         (format!("{deck}{}", words.join(" ")), deck.len())
     })
 }
@@ -168,8 +181,9 @@ fn each_declared_keyword_is_read() {
         }
     }
     assert!(wrong.is_empty(), "{wrong}");
+    // A line that has a mistake for another reason proves nothing.
     assert!(
-        read > 500 && hidden.len() < 1,
+        read > 750 && hidden.len() < 60,
         "{read} were read; other mistakes hide {}:\n{}",
         hidden.len(),
         hidden.join("\n")
@@ -201,11 +215,22 @@ const OPEN: &[(&str, &str)] = &[
 
 /// Words of a text that the reading accepts and no declaration has.
 fn undeclared(name: &str, text: &str, found: &mut String) -> usize {
-    let (mut known, mut count) = (Known::default(), 0);
+    let (mut known, mut style, mut count) = (Known::default(), None, 0);
     for line in raw_lines(text, FileId(0)) {
-        let words = texts(&line);
-        if words.first() == Some(&"pair_style") {
-            known.pair = words.get(1).map(|style| (*style).to_string());
+        let mut words = texts(&line);
+        match words.first() {
+            Some(&"pair_style") => style = words.get(1).map(|style| (*style).to_string()),
+            Some(&"pair_coeff") => match style.as_deref() {
+                // The words are those of the sub-style.
+                Some("hybrid" | "hybrid/overlay") if words.len() > 3 => {
+                    known.pair = Some(words.remove(3).to_string())
+                }
+                Some(style) if !style.contains('$') => known.pair = Some(style.to_string()),
+                _ => continue,
+            },
+            // Which style the words belong to depends on another line.
+            Some(&"bond_coeff") => continue,
+            _ => {}
         }
         // How many words a value in the line stands for is open.
         if words.iter().any(|word| word.contains('$')) {

@@ -24,12 +24,12 @@ pub struct Reneighbor {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
 #[word(what = "value of lost")]
 pub enum Lost {
-    /// The run ends.
+    /// A particle beyond a fixed face ends the run; the default.
     #[default]
     Error,
-    /// They are deleted; thermo output warns once.
+    /// It is deleted, with its bonds and contacts, when neighbour lists are built; thermo output warns once.
     Warn,
-    /// They are deleted.
+    /// It is deleted likewise, without a warning.
     Ignore,
 }
 

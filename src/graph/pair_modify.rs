@@ -4,14 +4,14 @@ use super::declaration::{Context, Declared};
 use super::node::Graph;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
 use perigrain_lang::{Args, Word};
-use perigrain_pairs::Mix;
+use perigrain_pairs::{Mix, PairOption};
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::{At, Each, Idle, Steps, Words, alternatives, read_or};
 use perigrain_world::{GroupId, World};
 
 /// The words of a `pair_modify` line.
 #[derive(Words)]
-#[word(least = 1)]
+#[word(least = 1, what = "a keyword such as shift or mix")]
 pub struct PairModify {
     /// The sub-style of `hybrid` that the other words concern.
     #[word(keyword, name = "STYLE", what = "a sub-style")]
@@ -68,7 +68,6 @@ pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
     let Some(node) = &graph.pair else {
         return fail(Code::WRONG_ORDER, args.name_span(), "pair_modify comes before any pair_style");
     };
-    args.clone().expect("a keyword such as shift or mix")?;
     let (facts, mut pair) = (node.pair.facts(), node.pair.clone());
     let build = cx.build(graph, w, "", GroupId::ALL);
     let line: PairModify = read_or(args, &build, special)?;
@@ -78,7 +77,7 @@ pub fn pair_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
     let (mut shift, mut tail, mut idle) = (false, false, false);
     for given in line.options.0 {
         match given.value {
-            Setting::Mix(rule) if facts.mixes => pair.mix(rule),
+            Setting::Mix(rule) if facts.mixes => pair.modify(PairOption::Mix(rule), &build)?,
             Setting::Shift(yes) => shift = yes,
             Setting::Tail(yes) => tail = yes,
             Setting::Compute(At { value: false, span, .. }) => {

@@ -6,6 +6,7 @@ use super::heads;
 use super::node::{Graph, PairNode};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Command, Word};
+use perigrain_styles::pair::PairOption;
 use perigrain_styles::words::{Or, Types, inner};
 use perigrain_world::{GroupId, World};
 
@@ -105,7 +106,7 @@ pub fn peri_modify(graph: &mut Graph, w: &mut World, args: &mut Args, cx: &Conte
         return fail(Code::WRONG_ORDER, args.name_span(), text);
     };
     let mut pair = node.pair.clone();
-    pair.modify(args.command(), args, &cx.build(graph, w, "", GroupId::ALL))?;
+    pair.modify(PairOption::Peri(args), &cx.build(graph, w, "", GroupId::ALL))?;
     args.finish()?;
     if let Some(node) = &mut graph.pair {
         node.pair = pair;

@@ -19,11 +19,11 @@ use words::{Interval, Modify, Style};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
 #[word(what = "value of energy")]
 pub enum Runaway {
-    /// It ends with an error.
+    /// Energy that has grown beyond reason ends the run; the default but for `compat lammps`.
     Error,
-    /// The log warns once.
+    /// The log warns once; the default of `compat lammps`.
     Warn,
-    /// Nothing.
+    /// It is not checked.
     Ignore,
 }
 

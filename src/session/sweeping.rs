@@ -18,7 +18,7 @@ pub struct Swept {
 
 /// The words of a `sweep` line.
 #[derive(Words)]
-#[word(least = 1)]
+#[word(least = 1, what = "each, zip, table or report")]
 pub struct Sweep {
     #[word(flatten)]
     parts: Each<Listed>,

@@ -33,10 +33,6 @@ const LINES: &[(&str, &str)] = &[
         "fix 1 all ave/chunk 1 1 10 chunks vx",
         "norm ave adof cdof bias format file append overwrite title1 title2 title3",
     ),
-    (
-        "fix 1 all ave/correlate 1 5 10 c_t",
-        "type ave start prefactor file append overwrite title1 title2 title3",
-    ),
     ("fix 1 all rigid single", "force torque reinit infile gravity"),
     ("fix 1 all rigid/small molecule", "reinit infile mol gravity"),
     ("fix 1 all deform 1 x scale 2.0", "y z xy xz yz remap flip units"),
@@ -63,7 +59,6 @@ const LINES: &[(&str, &str)] = &[
         "region nchunk limit ids compress discard bound pbc units",
     ),
     ("compute 1 all reduce max vx", "replace inputs"),
-    ("compute 1 all coord/atom cutoff 1.0", "group"),
     ("compute 1 all erotate/sphere", ""),
     ("thermo_modify", "lost lost/bond warn norm flush line colname format temp press energy"),
     ("thermo_modify norm yes", "lost warn flush line colname format temp press"),
@@ -72,11 +67,11 @@ const LINES: &[(&str, &str)] = &[
     ("thermo_style custom step", "step elapsed dt time temp press pe ke etotal vol lx c_t"),
     (
         "dump_modify d",
-        "append at buffer every every/time first flush format header maxfiles pad region skip sort thresh time units unwrap",
+        "append buffer every every/time first flush format header maxfiles pad region skip sort thresh time units",
     ),
     ("dump_modify p", "acolor adiam backcolor boxcolor"),
     ("dump 1 all image 10 p.png type type", "adiam atom axes box center fsaa shiny size ssao up view zoom"),
-    ("min_modify", "dmax line norm alpha_damp"),
+    ("min_modify", "dmax line norm integrator"),
     (
         "min_modify dmax 0.1",
         "line norm integrator tmax tmin delaystep dtgrow dtshrink alpha0 alphashrink halfstepback initialdelay vdfmax",

@@ -4,9 +4,9 @@ mod op;
 mod probe;
 mod table;
 
-use super::{ByPart, Deck, Facts, Mix, Pair, Scales, TypePairs};
+use super::{ByPart, Deck, Facts, Mix, Pair, PairOption, Scales, TypePairs};
 use op::Push;
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
 use perigrain_plan::Op;
@@ -119,8 +119,15 @@ impl<L: Law> Pair for Declared<L> {
         self.only = Some(pairs.to_vec());
     }
 
-    fn mix(&mut self, rule: Mix) {
-        self.rule = rule;
+    fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
+        match option {
+            PairOption::Mix(rule) => self.rule = rule,
+            PairOption::Peri(_) => {
+                let text = format!("`peri_modify` does not concern pair_style {}", L::NAME);
+                return fail(Code::CONFLICT, cx.span, text);
+            }
+        }
+        Ok(())
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<ByPart<dyn Op>> {

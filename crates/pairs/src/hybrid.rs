@@ -1,6 +1,6 @@
 //! `pair_style hybrid` and `hybrid/overlay`: several pair styles, each for its own pairs of types.
 
-use super::{ByPart, Deck, Facts, Mix, PAIRS, Pair, PairStyle, Scales, TypePairs};
+use super::{ByPart, Deck, Facts, PAIRS, Pair, PairOption, PairStyle, Scales, TypePairs};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail, nearest};
 use perigrain_lang::{Args, Word, blame};
 use perigrain_plan::Op;
@@ -237,19 +237,17 @@ impl Pair for Declared {
         Scales { cutoff, ..Scales::default() }
     }
 
-    fn mix(&mut self, rule: Mix) {
-        self.subs.iter_mut().filter(|s| s.facts().mixes).for_each(|sub| sub.mix(rule));
-    }
-
-    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let solid = self.subs.iter_mut().find(|s| s.facts().true_forces.is_some());
-        match (command, solid) {
-            ("peri_modify", Some(sub)) => sub.modify(command, args, cx),
-            _ => fail(
-                Code::CONFLICT,
-                cx.span,
-                format!("`{command}` concerns no sub-style of this {}", self.name),
-            ),
+    fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
+        if let PairOption::Mix(rule) = option {
+            let mut mixing = self.subs.iter_mut().filter(|s| s.facts().mixes);
+            return mixing.try_for_each(|sub| sub.modify(PairOption::Mix(rule), cx));
+        }
+        match self.subs.iter_mut().find(|s| s.facts().true_forces.is_some()) {
+            Some(sub) => sub.modify(option, cx),
+            None => {
+                let text = format!("`peri_modify` concerns no sub-style of this {}", self.name);
+                fail(Code::CONFLICT, cx.span, text)
+            }
         }
     }
 

@@ -27,7 +27,7 @@ pub use granular::mdr::PLASTIC_GRAIN;
 pub use granular::ranks::DEEP;
 pub use shared::FROZEN;
 
-pub use perigrain_styles::pair::{ByPart, Deck, Facts, Mix, Pair, PairStyle, Scales, TypePairs};
+pub use perigrain_styles::pair::{ByPart, Deck, Facts, Mix, Pair, PairOption, PairStyle, Scales, TypePairs};
 pub use perigrain_styles::probe;
 
 /// Every pair style.

@@ -94,6 +94,14 @@ impl Mix {
     }
 }
 
+/// An option of a pair style from another command than its own.
+pub enum PairOption<'a, 'b> {
+    /// How types are mixed.
+    Mix(Mix),
+    /// The words of `peri_modify`.
+    Peri(&'a mut Args<'b>),
+}
+
 /// What the deck states about particles, for a check without particles.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Deck<'a> {
@@ -193,17 +201,18 @@ pub trait Pair: DynClone + Send {
         None
     }
 
-    /// `pair_modify mix …`, where types are mixed by a rule.
-    fn mix(&mut self, _rule: Mix) {}
-
-    /// `peri_modify …`: options by command name.
+    /// `peri_modify …`, and `pair_modify mix …` where types are mixed by a rule.
     ///
     /// # Errors
     /// By default the pair style has none.
-    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        let span = args.peek().map_or(cx.span, |w| w.span);
-        let name = self.facts().name;
-        fail(Code::CONFLICT, span, format!("`{command}` does not concern pair_style {name}"))
+    fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
+        match option {
+            PairOption::Mix(_) => Ok(()),
+            PairOption::Peri(args) => {
+                let (span, name) = (args.peek().map_or(cx.span, |w| w.span), self.facts().name);
+                fail(Code::CONFLICT, span, format!("`peri_modify` does not concern pair_style {name}"))
+            }
+        }
     }
 
     /// Contradictions within the present declarations that a run would trip over, left as notes in `cx`.

@@ -26,7 +26,7 @@
 //! | `flatten` | the words and keywords of another struct stand here |
 //! | `skip` | no word at all: `Default::default()` |
 //!
-//! A struct may say `#[word(least = 1)]`: one of its keywords must be there. A default may look at the scene: `cx` is at hand.
+//! A struct may say `#[word(least = 1)]`: one of its keywords must be there (in messages `what`, or "a keyword"). A default may look at the scene: `cx` is at hand.
 //!
 //! An enum says `#[word(what = "direction")]`, its variants `#[word("word")]` where the word is not the variant's name in small
 //! letters, and `#[word(once)]` where a keyword of an enum is shown and offered once. Both may list words of LAMMPS that are refused by name: `#[word(refused = "gradient")]`.

@@ -34,10 +34,11 @@ pub fn derive(input: &DeriveInput, data: &DataStruct) -> syn::Result<TokenStream
     let Built { parts, keywords, begin, arms, nested, fields } = built;
     let refused = literals(&own.refused);
     let imports = imports();
+    let what = own.own_what().unwrap_or("a keyword");
     let some = match own.least {
         0 => quote!(),
         _ => quote!(if args.is_empty() {
-            args.expect("a keyword")?;
+            args.expect(#what)?;
         }),
     };
     Ok(quote! {

@@ -66,14 +66,11 @@ pub(super) enum Setting {
     /// The pressure.
     #[word(once)]
     Press(#[word(name = "ID", what = "the ID of a compute", kind = Kind::Compute)] Word),
-    /// A particle beyond a fixed face: `error` (default) ends the run; `warn` and `ignore` delete it, with its bonds and contacts, when
-    /// neighbour lists are built, and `warn` warns once.
     #[word(once)]
     Lost(#[word(name = "lost")] Lost),
     /// A bond of which one end is lost: `error` (default) ends the run; `ignore` and `warn` continue without its force.
     #[word(word = "lost/bond", once)]
     LostBond(#[word(name = "lost", like = LostBonds)] LostBond),
-    /// Energy that has grown beyond reason: `error` (default; `compat lammps`: `warn`) ends the run.
     #[word(once)]
     Energy(#[word(name = "energy")] Runaway),
     /// Read for LAMMPS' decks, with a note that it has no effect.
@@ -93,9 +90,9 @@ pub(super) enum Setting {
 pub(super) enum Layouts {
     /// All columns of a step are on one line.
     One,
-    /// They are on several lines.
+    /// All columns of a step are on several lines.
     Multi,
-    /// They are an item of a YAML list.
+    /// All columns of a step are an item of a YAML list.
     Yaml,
 }
 

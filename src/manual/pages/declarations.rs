@@ -36,7 +36,7 @@ pub(super) const PAIR_MODIFY: Entry = (
     Doc {
         syntax: Syntax::Behind(PairModify::GRAMMAR),
         summary: "How types are mixed, and options of LAMMPS' pair styles that have no effect here.",
-        text: "A note says which words change nothing. `special` would change forces and is refused.",
+        text: "A note names the words that change nothing. `special` would change forces and is refused.",
         example: "pair_modify shift yes mix geometric",
     },
 );
@@ -75,11 +75,8 @@ pub(super) const PERI_MODIFY: Entry = (
         // The lines stand on the pages of the pair styles.
         syntax: Syntax::Forms(&[]),
         summary: "Sets options of the peridynamic pair styles.",
-        text: "`force density` keeps LAMMPS' force densities with the density in the place of mass; `newton` makes forces \
-            true forces and masses ρV, so that grains and bodies exchange momentum and energies add up in one scene. \
-            `volume` chooses how bonds near the horizon are weighted, `surface` what makes up for bonds that lack at surfaces, `horizon` \
-            whether horizons count in the lattice's spacing or in that around each particle; bonds with an end in a region of `nofail` never break. See `pair_style peri/pmb`. LAMMPS has no such \
-            command.",
+        text: "With `force newton` grains and bodies exchange momentum, and energies add up in one scene. See `pair_style \
+            peri/pmb`. LAMMPS has no such command.",
         example: "peri_modify force newton volume full",
     },
 );

@@ -18,7 +18,7 @@ mod scatter;
 mod softening;
 mod ves;
 
-use super::{ByPart, Deck, Facts, Pair, Scales, TypePairs};
+use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
 use bond_probe::BondProbe;
 pub use eps::PeriEps;
 use force::Force;
@@ -348,8 +348,11 @@ impl Pair for Solid {
         Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
     }
 
-    fn modify(&mut self, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        options::read(self, command, args, cx)
+    fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
+        match option {
+            PairOption::Mix(_) => Ok(()),
+            PairOption::Peri(args) => options::read(self, args, cx),
+        }
     }
 
     fn coefficient(&self, name: &str, (i, j): (u16, u16)) -> Option<f64> {

@@ -130,14 +130,7 @@ enum Members {
 ///
 /// # Errors
 /// Every mistake in the line.
-pub fn read(style: &mut Solid, command: &str, args: &mut Args, cx: &BuildCx) -> Result<()> {
-    if command != "peri_modify" {
-        return fail(
-            Code::CONFLICT,
-            cx.span,
-            format!("`{command}` does not concern pair_style {}", style.name),
-        );
-    }
+pub fn read(style: &mut Solid, args: &mut Args, cx: &BuildCx) -> Result<()> {
     if args.is_empty() {
         let text = format!("peri_modify needs an option: {}", Line::GRAMMAR.keywords().join(", "));
         return fail(Code::MISSING_ARGUMENT, args.here(), text);

@@ -442,6 +442,14 @@ impl Part {
                     let shown = format!("{keyword} {}", one.shown());
                     rows.push([shown.trim().to_string(), one.about.into(), String::new(), String::new()]);
                 }
+                if let Kind::Or(_, Kind::Words(grammar)) = word.kind {
+                    let about = grammar.in_order().into_iter().find_map(|part| match part {
+                        Part::Word(first) if !first.about.is_empty() => Some(first.about),
+                        _ => None,
+                    });
+                    let shown = format!("{keyword} {}", grammar.line());
+                    rows.extend(about.map(|about| [shown, about.into(), String::new(), String::new()]));
+                }
                 return;
             }
             Part::Maybe(parts) | Part::Many(parts, _) => *parts,
