@@ -27,7 +27,6 @@ const WRITTEN: &[(&str, &str)] = &[
     ("quit", "the language reads it"),
     ("shell", "whatever does not begin with one of its words is a line for the system's shell"),
     ("balance", "axes with uniform cuts or places may follow each other; without effect here"),
-    ("peri_modify", "the pair style reads it"),
 ];
 
 /// A word that a place may take.

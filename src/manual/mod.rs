@@ -129,11 +129,12 @@ fn gathered() -> Vec<Page> {
     .concat()
 }
 
-/// The pages of `dump_modify` and `fix_modify` with all their lines: what all dumps or fixes have, and what each style adds. Other
+/// The pages of `dump_modify`, `peri_modify` and `fix_modify` with all their lines: what all dumps, solids or fixes have, and what each style adds. Other
 /// pages stay as they are.
 fn with_options(name: &'static str, doc: Doc, tables: &Tables) -> Doc {
     match name {
         "dump_modify" => with_forms(name, perigrain_dumps::MODIFIED.to_vec(), &tables.dumps, doc),
+        "peri_modify" => with_forms(name, vec![], &tables.pairs, doc),
         "fix_modify" => with_forms(name, vec![Form::headed(name, &FIX_MODIFY)], &tables.fixes, doc),
         _ => doc,
     }

@@ -35,7 +35,7 @@ pub fn hint(line: &str, known: &Known, folder: &Path) -> Option<Hint> {
         Some(_) => return None,
         None => knowing::place(&words, known)?.0.rest,
     };
-    let rest = rest.replace('…', " …");
+    let rest = rest.replace(" …", "…").replace('…', " …");
     let shown: String = rest.chars().take(LONGEST).collect();
     let cut = if shown.len() < rest.len() { "…" } else { "" };
     let blank = if begun { " " } else { "" };
