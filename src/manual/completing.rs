@@ -116,10 +116,9 @@ fn possible(typed: &[&str], word: &str, known: &Known, folder: &Path) -> (usize,
         },
         _ => {}
     }
-    let Some((places, page)) = knowing::places(typed, known) else { return (0, vec![]) };
+    let Some(places) = knowing::places(typed, known) else { return (0, vec![]) };
     let slot = Slot { command, typed, known, folder, word };
-    let mut out = slot.behind_region(page.written());
-    let mut skip = 0;
+    let (mut out, mut skip) = (vec![], 0);
     for offer in places.iter().flat_map(|place| &place.offers) {
         let (s, mut names) = slot.offered(offer);
         skip = skip.max(s);
@@ -153,16 +152,6 @@ struct Slot<'a> {
 }
 
 impl Slot<'_> {
-    /// Regions after a `region` that needs one, wherever in the line it stands.
-    fn behind_region(&self, syntax: &str) -> Vec<Candidate> {
-        let wants = ["region ID", "region regionID", "region region-ID"].iter().any(|w| syntax.contains(w));
-        if !wants || self.typed.len() < 3 || self.typed.last() != Some(&"region") {
-            return vec![];
-        }
-        let named = |text: &String| Candidate { text: text.clone(), what: What::Named(Named::Region) };
-        self.known.regions.iter().map(named).collect()
-    }
-
     /// What a declared word may become.
     fn offered(&self, offer: &Offer) -> (usize, Vec<Candidate>) {
         let place = match offer {

@@ -247,12 +247,12 @@ fn best(typed: &[&str], known: &Known) -> Option<&'static Entry> {
 }
 
 /// The words that may follow the typed ones in those forms of the same page that fit as well as the best one.
-pub fn places(typed: &[&str], known: &Known) -> Option<(Vec<Place>, Page)> {
+pub fn places(typed: &[&str], known: &Known) -> Option<Vec<Place>> {
     let entry = best(typed, known)?;
     let fit = entry.form.fit(typed);
     let same = |e: &&Entry| e.page.title() == entry.page.title() && e.form.fit(typed) == fit;
     let all = FORMS.get(*typed.first()?)?;
-    Some((all.iter().filter(same).map(|e| e.form.place(typed)).collect(), entry.page))
+    Some(all.iter().filter(same).map(|e| e.form.place(typed)).collect())
 }
 
 /// Which of the words of a line are none that is declared for their places, in any form that fits the line as well as the best one;
