@@ -366,7 +366,8 @@ impl Fix for Declared {
                         | lie,
                 )
                 .keep(MEMO | RIGID | field::COLUMNS)
-                .only(&self.keys.names()),
+                .only(&self.keys.names())
+                .only(self.split.column().as_slice()),
             move |w, t| {
                 if t.setup && !t.unchanged {
                     me.begin(w, span)?;

@@ -15,6 +15,9 @@ pub static VOLUME_PROPERTY: Constant<Vec<f64>> = Constant::new("d_vfrac");
 /// How the names of the columns begin that keep forces and torques of levels of steps between steps.
 pub const LEVEL: &str = "level/";
 
+/// The role of the columns that keep how far particles have gone in a step of a level, and their mean spins.
+pub static LEVEL_PATH: Constant<Vec<[f64; 3]>> = Constant::new("/level path");
+
 /// The columns that keep what a level of steps has of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
@@ -35,7 +38,7 @@ impl Level {
         Self {
             forces: vectors(["force", "torque"]),
             heat: Key::new(&of("heat")),
-            path: vectors(["path", "spin"]),
+            path: vectors(["path", "spin"]).map(|key: Vectors| key.in_role(LEVEL_PATH.text())),
         }
     }
 }

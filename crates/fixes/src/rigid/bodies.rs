@@ -27,6 +27,16 @@ pub enum Split {
     Groups(Vec<GroupId>),
 }
 
+impl Split {
+    /// The name of the column that numbers the bodies, if one does.
+    pub fn column(&self) -> Option<&'static str> {
+        match self {
+            Self::Custom(column) => Some(column.text()),
+            Self::Single | Self::Molecule | Self::Groups(_) => None,
+        }
+    }
+}
+
 impl Declared {
     /// Loads the bodies from the world.
     pub fn load(&self, w: &World) -> Vec<Body> {

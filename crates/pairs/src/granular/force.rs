@@ -19,7 +19,7 @@ use perigrain_neigh::list::{Pair, Reach, Wanted};
 use perigrain_plan::{About, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::ledger::{PAIR_WORK, WALL_TOUCHES};
 use perigrain_world::Fields;
-use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::columns::{HEATFLOW, LEVEL_PATH, TEMPERATURE};
 use perigrain_world::contacts::{Contacts, PairWork};
 use perigrain_world::field::{
     BONDS, BOX, COLUMNS, CONTACTS, F, FACTS, FAMILIES, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, OMEGA,
@@ -322,7 +322,7 @@ impl Op for Force {
                 )
                 .add(F | TORQUE)
                 .write(FACTS | CONTACTS | TALLY)
-                .only(&[CONTACT_MASS.text(), TEMPERATURE.text(), HEATFLOW.text()])
+                .only(&[CONTACT_MASS.text(), TEMPERATURE.text(), HEATFLOW.text(), LEVEL_PATH.text()])
         };
         About::new(&self.name, Stage::Force, needs)
     }
