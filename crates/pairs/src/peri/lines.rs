@@ -40,7 +40,7 @@ pub fn of_bonds(laws: impl Iterator<Item = &'static Style>, own: &'static Gramma
 }
 
 /// The value of a keyword.
-const VALUE: &[Part] = &[Part::Word(Placeholder { name: "value", kind: Kind::Number, about: "", unit: "" })];
+const VALUE: &[Part] = &[Part::number("value")];
 
 const LASTING: Part = Part::All(Lasting::GRAMMAR);
 

@@ -11,7 +11,7 @@ use perigrain_peri::families::{Moduli, PmbCoeff};
 use perigrain_peri::law::style::Curve;
 use perigrain_peri::law::{LawKind, Style};
 use perigrain_peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
-use perigrain_styles::words::{Keyword, Kind, Part, Placeholder, Value, Words, alternatives, inner, one_in};
+use perigrain_styles::words::{Keyword, Kind, Part, Value, Words, alternatives, inner, one_in};
 use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::material::{Material, Strength};
 use std::collections::BTreeMap;
@@ -227,22 +227,14 @@ const fn keyword(
     Keyword { word, values, about, default, repeats: false }
 }
 
-const fn place(name: &'static str, kind: Kind) -> Part {
-    Part::Word(Placeholder { name, kind, about: "", unit: "" })
-}
-
 /// How far bonds reach.
-pub const HORIZON: Keyword = keyword(
-    "horizon",
-    &[place("H", Kind::Number)],
-    "The horizon, in spacings of the lattice.",
-    Keyword::NEEDED,
-);
+pub const HORIZON: Keyword =
+    keyword("horizon", &[Part::number("H")], "The horizon, in spacings of the lattice.", Keyword::NEEDED);
 
 /// Which modulus bond-based laws keep.
 pub const FORM: Keyword = keyword(
     "form",
-    &[place("modulus", Kind::Choice(&alternatives(&Form::NAMES)))],
+    &[Part::bare("modulus", Kind::Choice(&alternatives(&Form::NAMES)))],
     "Which modulus of the material the bonds keep, as they fix ν = 1/4: c = 18K/(πδ⁴), 30G/(πδ⁴) (Walayat et al. 2023) or \
      12E/(πδ⁴).",
     "bulk",
@@ -251,14 +243,14 @@ pub const FORM: Keyword = keyword(
 /// The critical stretch.
 pub const S00: Keyword = keyword(
     "s00",
-    &[place("value", Kind::Number)],
+    &[Part::number("value")],
     "The critical stretch, in place of that of the material or of its fracture energy.",
     "",
 );
 
 /// By which part compression strengthens bonds.
 pub const ALPHA: Keyword =
-    keyword("alpha", &[place("value", Kind::Number)], "In place of that of the material.", "");
+    keyword("alpha", &[Part::number("value")], "In place of that of the material.", "");
 
 /// Reads `ID horizon H [s00 S] [alpha A]` and the law's own words.
 fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
