@@ -243,7 +243,9 @@ impl Session {
         let read_files = std::mem::take(&mut self.world.read_files);
         let host = self.world.facts.remove(*HOST);
         self.world = World::default();
-        host.map(|host| self.world.facts.insert(*HOST, host));
+        if let Some(host) = host {
+            self.world.facts.insert(*HOST, host);
+        }
         self.world.read_files = read_files;
         self.world.promised = promised;
         self.world.promised.instead = self.looking();

@@ -184,7 +184,9 @@ impl Session {
         world.folder = std::mem::take(&mut old.folder);
         world.read_files = std::mem::take(&mut old.read_files);
         world.promised = std::mem::take(&mut old.promised);
-        old.facts.remove(*HOST).map(|host| world.facts.insert(*HOST, host));
+        if let Some(host) = old.facts.remove(*HOST) {
+            world.facts.insert(*HOST, host);
+        }
         (world.clock.running, world.clock.halt) = (false, Halt::No);
         let state = world.memo.keys().map(Key::text).chain(world.columns.names()).filter(|n| claimable(n));
         let names = world.regions.keys().map(|n| format!("region/{n}"));
