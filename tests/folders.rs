@@ -6,6 +6,8 @@ mod docs;
 #[path = "fixes/main.rs"]
 mod fixes;
 mod manual;
+#[path = "common/pages.rs"]
+mod scene;
 #[path = "common/threads.rs"]
 mod threads;
 #[path = "tilted/main.rs"]

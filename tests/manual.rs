@@ -1,14 +1,11 @@
 //! Every example of the manual runs in a small scene, and the pages list what there is.
 
-#[path = "common/pages.rs"]
-mod scene;
-
+use crate::scene::{Folder, SCENE, deck, hosted, is_for_the_shell};
 use perigrain::cli::manual::pages;
 use perigrain::diag::render;
 use perigrain::graph::catalogue::DECLARATIONS;
 use perigrain::output::log::Log;
 use perigrain::session::{Mode, OWN, Options, Session};
-use scene::{Folder, SCENE, deck, hosted, is_for_the_shell};
 use std::fmt::Write as _;
 use std::io::Write;
 use std::process::Command;

@@ -1,8 +1,6 @@
 //! The words of lines: each declared keyword is read, and each word that decks use is declared.
 
-#[path = "common/pages.rs"]
-mod scene;
-
+use crate::scene::{Folder, deck, hosted, is_for_the_shell};
 use perigrain::cli::manual::{Page, pages};
 use perigrain::diag::{Code, Diagnostic, FileId, Severity};
 use perigrain::lang::{RawLine, raw_lines};
@@ -11,7 +9,6 @@ use perigrain::manual::syntax::is_word;
 use perigrain::manual::walk::Declared;
 use perigrain::session::{Known, Mode, Options, Session};
 use perigrain::styles::words::{Kind, Part, Syntax};
-use scene::{Folder, deck, hosted, is_for_the_shell};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,6 +25,9 @@ const WRITTEN: &[(&str, &str)] = &[
     ("shell", "whatever does not begin with one of its words is a line for the system's shell"),
     ("balance", "axes with uniform cuts or places may follow each other; without effect here"),
 ];
+
+/// The material that made-up lines name.
+const GLASS: &str = "material glass E 72e9 nu 0.25 rho 2235 Gc 10\n";
 
 /// A word that a place may take.
 fn fitting(kind: Kind) -> Vec<String> {
@@ -116,6 +116,7 @@ fn based(page: &Page, form: &Declared) -> (String, usize) {
         });
         let parts = form.grammar().in_order().into_iter().flat_map(|part| filled(&[*part]));
         let words: Vec<String> = std::iter::once(first.clone()).chain(head).chain(parts).collect();
+        let deck = deck.clone() + if words.iter().any(|word| word == "material") { GLASS } else { "" };
         (format!("{deck}{}", words.join(" ")), deck.len())
     })
 }

@@ -236,7 +236,9 @@ fn best(typed: &[&str], known: &Known) -> Option<&'static Entry> {
             fit += typed.len() as i32;
         }
         let pair = entry.page.kind == "pair_style" && typed[0] != "pair_style";
-        if pair && typed.get(3).or(known.pair.as_deref().as_ref()).is_some_and(|s| *s == entry.page.name) {
+        // Of a hybrid the line names the style.
+        let mut styles = [typed.get(3).copied(), known.pair.as_deref()].into_iter().flatten();
+        if pair && styles.any(|style| style == entry.page.name) {
             fit += 3;
         }
         if best.is_none_or(|(most, _)| fit > most) {
