@@ -86,7 +86,7 @@ fn base(deck: &str, form: &Declared) -> Option<(String, usize)> {
             && form.head().iter().zip(words).all(|(head, word)| !is_word(head) || head == word)
     };
     let lines = raw_lines(deck, FileId(0));
-    let line = lines.iter().filter(fits).next_back()?;
+    let line = lines.iter().rfind(fits)?;
     let last = line.words.last()?;
     let end = last.span.end as usize
         + usize::from(last.quoted && deck[last.span.end as usize..].starts_with(['"', '\'']));
