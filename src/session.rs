@@ -3,6 +3,7 @@
 mod acts;
 mod ahead;
 pub mod axes;
+mod balancing;
 mod belongs;
 mod brief;
 mod causes;
@@ -477,6 +478,8 @@ impl Session {
             self.read_restart(cmd)?;
         } else if name == "minimize" {
             self.minimize(cmd)?;
+        } else if name == "statics" {
+            self.statics(cmd)?;
         } else if name == "rerun" {
             self.rerun(cmd)?;
         } else if DECLARATIONS.contains(&name) {
