@@ -20,7 +20,7 @@ use std::time::Instant;
 
 /// The words of a `statics` line.
 #[derive(Words)]
-pub struct Line {
+pub struct Statics {
     /// The number of load steps, over which the clock moves: what depends on time is the load.
     #[word(name = "N", what = "the number of load steps", from = 1)]
     steps: i64,
@@ -58,7 +58,7 @@ enum Break {
 
 impl Session {
     pub(super) fn statics(&mut self, cmd: &Command) -> Result<()> {
-        let line: Line = self.read_line(cmd)?;
+        let line: Statics = self.read_line(cmd)?;
         let breaking = match line.r#break {
             Break::One => Breaking::One,
             Break::Batch { share } => Breaking::Batch(share.0),
