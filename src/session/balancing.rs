@@ -153,7 +153,7 @@ impl Session {
         let body = move |w: &World| body(w, held, led, span);
         let outcome = statics::statics(&mut plan, w, watch, body, goal, &mut note);
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
-        self.world.changed &= outcome.is_err();
+        *self.world.changed &= outcome.is_err();
         self.ran = false;
         let finished = plan.finish(&mut self.world);
         self.notes.append(std::mem::take(&mut self.world.notes));

@@ -46,7 +46,7 @@ pub(super) struct Balance<'a> {
 
 impl<'a> Balance<'a> {
     /// A body as it is.
-    pub fn new(plan: &'a mut StepPlan, w: &'a mut World, body: Body, goal: Goal, read: Energy<'a>) -> Self {
+    pub fn new(plan: &'a mut StepPlan, w: &'a mut World, body: Body, goal: Goal) -> Self {
         let blocks = Blocks::of_network(&body.network, &body.held);
         let last = vec![[0.0; 6]; w.n()];
         Self { plan, w, body, goal, ledger: Books::default(), blocks, coarse: None, path: vec![], last }
