@@ -151,7 +151,7 @@ impl Session {
         let mut note = |made: &Numbers| log.line(&row(made));
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         let body = move |w: &World| body(w, held, led, span);
-        let outcome = statics::statics(&mut plan, w, watch, body, goal, &mut note);
+        let outcome = statics::statics(&mut plan, w, watch, (body, springs), goal, &mut note);
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         *self.world.changed &= outcome.is_err();
         self.ran = false;

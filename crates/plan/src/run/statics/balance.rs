@@ -7,6 +7,7 @@ use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_base::par;
 use perigrain_statics::coarse::Coarse;
+use perigrain_statics::network::Network;
 use perigrain_statics::pcg::{self, Preconditioner};
 use perigrain_statics::precond::Blocks;
 use perigrain_statics::six::Six;
@@ -22,6 +23,9 @@ const STEPS: usize = 40;
 const PRODUCTS: usize = 2000;
 /// How often a step is halved where its end is farther from balance than its beginning.
 const HALVINGS: usize = 30;
+/// Where so little is left over reactions and loads and two steps in a row do not halve it, rounding is what is left: stretches
+/// of 1e-14 count as none, beside those of 1e-7 and more that loads make.
+const ROUNDING: f64 = 1e-6;
 /// How far a step moves a particle at most, in distances of neighbours.
 const FARTHEST: f64 = 0.5;
 /// How exactly the first linear system of a load step is solved, over its load; later ones more so (Eisenstat and Walker).
@@ -50,6 +54,12 @@ impl<'a> Balance<'a> {
         let blocks = Blocks::of_network(&body.network, &body.held);
         let last = vec![[0.0; 6]; w.n()];
         Self { plan, w, body, goal, ledger: Books::default(), blocks, coarse: None, path: vec![], last }
+    }
+
+    /// Takes note of the bonds that live now.
+    pub fn renew(&mut self, network: Network) {
+        self.blocks = Blocks::of_network(&network, &self.body.held);
+        (self.body.network, self.coarse) = (network, None);
     }
 
     /// Moves the clock, and finds how far what stands on paths moves; it is put back to where it was.
@@ -108,11 +118,11 @@ impl<'a> Balance<'a> {
         self.residual(true)?;
         let mut r = self.unbalanced();
         let mut size = norm(&r);
-        let mut forcing = FORCING;
+        let (mut forcing, mut idle) = (FORCING, 0);
         for _ in 0..STEPS {
             let scale = self.ledger.scale(self.w, &self.body).max(f64::MIN_POSITIVE);
             made.force = size / scale;
-            if size == 0.0 || made.force <= self.goal.tol {
+            if size == 0.0 || made.force <= self.goal.tol || (idle > 1 && made.force <= ROUNDING) {
                 return Ok(());
             }
             forcing = forcing.max(0.1 * self.goal.tol * scale / size).min(FORCING);
@@ -130,7 +140,6 @@ impl<'a> Balance<'a> {
                 });
                 along = inner(&r, &field);
             }
-            made.error = along.abs();
             let most = field.iter().flat_map(|u| &u[..3]).fold(0.0, |m: f64, a| m.max(a.abs()));
             let mut part =
                 if most > FARTHEST * self.body.size { FARTHEST * self.body.size / most } else { 1.0 };
@@ -140,8 +149,8 @@ impl<'a> Balance<'a> {
                 self.residual(true)?;
                 r = self.unbalanced();
                 size = norm(&r);
-                let goes_on = inner(&r, &field) >= -BACK * along && halving < HALVINGS / 2;
-                if size < before || (size.is_finite() && goes_on) {
+                let not_past = inner(&r, &field) >= -BACK * along && halving < HALVINGS / 2;
+                if size < before || (size.is_finite() && not_past) {
                     break;
                 }
                 if halving == HALVINGS {
@@ -150,6 +159,7 @@ impl<'a> Balance<'a> {
                 part *= 0.5;
             }
             forcing = (size / before).powi(2).clamp(1e-4, FORCING);
+            idle = if size > 0.5 * before { idle + 1 } else { 0 };
         }
         Err(self.stuck(made))
     }

@@ -17,6 +17,7 @@ pub use bodies::Body;
 pub use ledger::Ledger;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
+use perigrain_statics::network::Network;
 use perigrain_world::{Halt, World};
 use std::time::Instant;
 
@@ -70,8 +71,6 @@ pub struct Numbers {
     pub products: usize,
     /// Unbalanced force over reactions and loads.
     pub force: f64,
-    /// Estimate of the error of the field in the energy norm, over the work so far.
-    pub error: f64,
     /// Bonds that broke.
     pub broken: usize,
     /// Energies from the first load step on.
@@ -84,7 +83,7 @@ pub struct Numbers {
 pub type Note<'a> = &'a mut dyn FnMut(&Numbers) -> Result<()>;
 
 /// Makes load steps until `goal.steps` are made; output appears as in a run. `body` finds what may move, once
-/// forces have been computed; `note` gets the numbers of each load step.
+/// forces have been computed, and `springs` the bonds that still live; `note` gets the numbers of each load step.
 ///
 /// # Errors
 /// The first op's that fails; bodies that cannot be balanced.
@@ -92,7 +91,7 @@ pub fn statics(
     plan: &mut StepPlan,
     w: &mut World,
     watch: &mut dyn Watch,
-    body: impl FnOnce(&World) -> Result<Body>,
+    (body, springs): (impl FnOnce(&World) -> Result<Body>, fn(&World) -> Network),
     goal: Goal,
     note: Note,
 ) -> Result<(Outcome, Numbers)> {
@@ -112,6 +111,9 @@ pub fn statics(
         let mut made = par::inside(|| balance.load_step())?;
         made.seconds = start.elapsed().as_secs_f64();
         note(&made)?;
+        if made.broken > 0 {
+            balance.renew(springs(balance.w));
+        }
         all = Numbers {
             newton: all.newton + made.newton,
             products: all.products + made.products,
