@@ -3,6 +3,7 @@
 mod acts;
 mod ahead;
 pub mod axes;
+mod balancing;
 mod belongs;
 mod brief;
 mod causes;
@@ -39,6 +40,7 @@ mod spent;
 mod stability;
 mod staggering;
 mod sweeping;
+mod table;
 mod timer;
 mod unused;
 pub mod whole;
@@ -463,27 +465,14 @@ impl Session {
         if !["print", "log", "echo", "info"].contains(&name) {
             script.changed();
         }
-        if name == "partition" {
-            return self.partition(script, cmd);
+        if let Some(carry) = table::own(name) {
+            return carry(self, script, cmd);
         }
-        if name == "run" {
-            self.doubt(script);
-            self.run_command(cmd)?;
-        } else if name == "write_dump" {
-            self.write_dump(cmd)?;
-        } else if name == "write_restart" {
-            self.write_restart(cmd)?;
-        } else if name == "read_restart" {
-            self.read_restart(cmd)?;
-        } else if name == "minimize" {
-            self.minimize(cmd)?;
-        } else if name == "rerun" {
-            self.rerun(cmd)?;
-        } else if DECLARATIONS.contains(&name) {
+        if DECLARATIONS.contains(&name) {
             self.declare(cmd)?;
         } else if let Some(style) = self.graph.tables.command(name) {
             self.act(cmd, style)?;
-        } else if !self.own_command(cmd)? {
+        } else {
             return Err(belongs::unknown_command(cmd, &self.graph.tables));
         }
         Ok(None)

@@ -82,7 +82,7 @@ fn mutate(case: &[u8], other: &[u8], r: &mut Random) -> Vec<u8> {
     new
 }
 
-/// Works mutated cases off until the time is over.
+/// Runs mutated cases until the time is over.
 fn hunt(name: &str, corpus: &[Vec<u8>], body: fn(&[u8])) {
     let seconds: f64 =
         std::env::var("PERIGRAIN_FUZZ_SECONDS").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0);

@@ -56,6 +56,7 @@ mod safe;
 #[path = "scripts.rs"]
 mod scripts;
 mod staggered;
+mod statics;
 #[path = "strangers/main.rs"]
 mod strangers;
 #[path = "stress/main.rs"]

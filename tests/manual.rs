@@ -58,7 +58,7 @@ impl Write for Heard {
     }
 }
 
-/// Works a deck off through the library: its output, or the messages that refuse it.
+/// Runs a deck through the library: its output, or the messages that refuse it.
 fn works(name: &str, deck: &str) -> Result<String, String> {
     works_in(Mode::Run, name, deck)
 }

@@ -28,7 +28,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("peri", &["base"]),
     ("world", &["base", "mesh", "peri"]),
     ("contact", &["base", "neigh", "peri", "world"]),
-    ("plan", &["base", "world"]),
+    ("plan", &["base", "statics", "world"]),
     ("output", &["base", "world"]),
     ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
     // Readers of files with bodies and scenes, and what makes particles of them.

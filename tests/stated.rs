@@ -185,7 +185,7 @@ fn judged(mut wrong: String) -> (String, String) {
     (seen, wrong)
 }
 
-/// Works a deck off; what is wrong with it.
+/// Runs a deck; what is wrong with it.
 fn run(path: &Path, text: &str, vars: &Vars, compat: bool) -> String {
     let (name, folder) = (&name(path), path.parent().unwrap().to_path_buf());
     let here = std::env::current_dir().unwrap().to_string_lossy().into_owned();

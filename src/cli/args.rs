@@ -240,7 +240,7 @@ pub const SWITCHES: &[Switch] = &[
     switch(
         &["-partition", "-p"],
         "MxN|N…",
-        "work the deck off M times beside each other, each with N threads",
+        "run the deck M times beside each other, each with N threads",
         |o, v| {
             o.partition = partitions::threads(&v.rest())?;
             Ok(())

@@ -19,7 +19,7 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Works a deck off in some mode; the exit code.
+/// Runs a deck in some mode; the exit code.
 pub fn execute(o: &Options, mode: Mode) -> u8 {
     let begin = Instant::now();
     let log = Log::silent();

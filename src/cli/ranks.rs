@@ -22,7 +22,7 @@ pub(super) const MOST: usize = 256;
 /// The output that a rank other than the first would have printed, shown if it ends alone.
 static KEPT: Mutex<String> = Mutex::new(String::new());
 
-/// Works a deck off, as one of several ranks where there are several.
+/// Runs a deck, as one of several ranks where there are several.
 ///
 /// # Errors
 /// Ranks that cannot be joined.
@@ -161,7 +161,7 @@ fn unjoined(by: &Launched, why: &comm::Error) -> Usage {
     )
 }
 
-/// Works the deck off together with the others; the exit code.
+/// Runs the deck together with the others; the exit code.
 fn together(ranks: &dyn Comm, o: &Options, mode: Mode) -> Result<u8, Usage> {
     let mut o = o.clone();
     let nodes = comm::nodes(ranks);

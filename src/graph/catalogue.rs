@@ -35,7 +35,7 @@ pub const DECLARATIONS: [&str; 20] = [
 ];
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 26] = [
+pub const SESSION_COMMANDS: [&str; 27] = [
     "print",
     "log",
     "echo",
@@ -55,6 +55,7 @@ pub const SESSION_COMMANDS: [&str; 26] = [
     "read_restart",
     "rerun",
     "minimize",
+    "statics",
     "shell",
     "info",
     "timer",

@@ -1,4 +1,4 @@
-//! Checks beside the requests: one thread works them off, the newest text of each deck alone.
+//! Checks beside the requests: one thread makes them, of the newest text of each deck alone.
 
 use super::places::{Text, path_of, uri_of};
 use crate::session::whole::{Checked, check};

@@ -1,7 +1,6 @@
 //! Commands about the session itself: print, log, echo, clear, compat.
 
 use super::{Session, refuse};
-use crate::graph::Role;
 use crate::graph::build::bring;
 use crate::graph::env::DeckEnv;
 use perigrain_base::diag::{Code, Result};
@@ -57,7 +56,7 @@ enum NoLog {
 #[derive(Words)]
 pub struct Echoing {
     #[word(name = "where", with = echo, kind = words::Kind::Choice(&alternatives(&Echo::NAMES)))]
-    echo: Echo,
+    pub(super) echo: Echo,
 }
 
 fn echo(args: &mut Args, _: &BuildCx) -> Result<Echo> {
@@ -72,7 +71,7 @@ fn echo(args: &mut Args, _: &BuildCx) -> Result<Echo> {
 #[derive(Words)]
 pub struct Compatibility {
     #[word(name = "mode", with = mode, kind = words::Kind::Choice(&alternatives(&Compat::NAMES)))]
-    mode: Compat,
+    pub(super) mode: Compat,
 }
 
 fn mode(args: &mut Args, _: &BuildCx) -> Result<Compat> {
@@ -143,42 +142,22 @@ impl Session {
         }
     }
 
-    /// Handles a command about the session; `false` if it is none.
-    ///
-    /// # Errors
-    /// Every mistake in the line.
-    pub(super) fn own_command(&mut self, cmd: &Command) -> Result<bool> {
-        let mut args = Args::new(cmd);
-        match cmd.name.text.as_str() {
-            "print" => self.print(self.read_line(cmd)?)?,
-            "log" => self.log(self.read_line(cmd)?)?,
-            "echo" => self.options.log.set_echo(self.read_line::<Echoing>(cmd)?.echo),
-            "clear" => {
-                args.finish()?;
-                self.vars.clear_atomfiles();
-                self.reset_world();
-            }
-            "compat" => {
-                let compat = self.read_line::<Compatibility>(cmd)?.mode;
-                self.options.compat = compat;
-                self.world.settings.compat = compat;
-                let lammps = self.world.settings.lammps();
-                self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));
-                self.world.touch();
-            }
-            "python" => self.python(&mut args, cmd.span)?,
-            "shell" => self.shell(cmd)?,
-            "info" => self.info(self.read_line(cmd)?)?,
-            "timer" => self.timer(self.read_line(cmd)?)?,
-            "sweep" => self.sweep(self.read_line(cmd)?, cmd.span)?,
-            _ if self.inert(cmd)? => {}
-            _ => return Ok(false),
-        }
-        self.record_once(cmd, Role::Act, None);
-        Ok(true)
+    /// Begins with an empty scene.
+    pub(super) fn clear(&mut self) {
+        self.vars.clear_atomfiles();
+        self.reset_world();
     }
 
-    fn print(&mut self, line: Print) -> Result<()> {
+    /// Chooses whether results follow LAMMPS where it is wrong.
+    pub(super) fn set_compat(&mut self, compat: Compat) {
+        self.options.compat = compat;
+        self.world.settings.compat = compat;
+        let lammps = self.world.settings.lammps();
+        self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));
+        self.world.touch();
+    }
+
+    pub(super) fn print(&mut self, line: Print) -> Result<()> {
         let (word, appended) = (line.text, line.append.is_some());
         let file = match (&line.file, &line.append) {
             (Some(_), Some(second)) => {
@@ -210,7 +189,7 @@ impl Session {
         Ok(())
     }
 
-    fn log(&mut self, Logging { file, append }: Logging) -> Result<()> {
+    pub(super) fn log(&mut self, Logging { file, append }: Logging) -> Result<()> {
         match file {
             Or::Word(NoLog::None) if self.looking() => Ok(()),
             Or::Word(NoLog::None) => self.options.log.close(),

@@ -92,40 +92,39 @@ pub struct Partition {
     words: Vec<Word>,
 }
 
+impl CommStyle {
+    /// Whether the box is divided into tiles.
+    pub(super) fn is_tiled(&self) -> bool {
+        self.style == Dividing::Tiled
+    }
+}
+
+/// Why commands have no effect.
+pub(super) const KERNELS: &str = "perigrain chooses its kernels itself";
+pub(super) const THREADS: &str = "perigrain chooses its kernels itself; threads are set by `-threads N`";
+pub(super) const WHOLE: &str = "the box is not divided among processes";
+pub(super) const SHARED: &str =
+    "the box is not divided among processes, and threads share the work by themselves";
+
 impl Session {
-    /// Handles a command that LAMMPS needs for its processes and accelerators; `false` if it is none.
+    /// Refuses a line behind the box.
     ///
     /// # Errors
-    /// Every mistake in the line.
-    pub(super) fn inert(&mut self, cmd: &Command) -> Result<bool> {
-        let why = match cmd.name.text.as_str() {
-            "suffix" => {
-                self.read_line::<Suffix>(cmd)?;
-                "perigrain chooses its kernels itself"
-            }
-            "package" => {
-                if self.world.domain.is_some() {
-                    let text = "`package` must come before the simulation box is defined";
-                    return refuse(Code::WRONG_ORDER, cmd.span, text);
-                }
-                self.read_line::<Package>(cmd)?;
-                "perigrain chooses its kernels itself; threads are set by `-threads N`"
-            }
-            "comm_style" => {
-                self.world.settings.tiled = self.read_line::<CommStyle>(cmd)?.style == Dividing::Tiled;
-                "the box is not divided among processes"
-            }
-            "balance" => {
-                balance(&mut Args::new(cmd))?;
-                "the box is not divided among processes, and threads share the work by themselves"
-            }
-            _ => return Ok(false),
-        };
+    /// There is a box.
+    pub(super) fn before_box(&self, cmd: &Command) -> Result<()> {
+        if self.world.domain.is_none() {
+            return Ok(());
+        }
+        let text = format!("`{}` must come before the simulation box is defined", cmd.name.text);
+        refuse(Code::WRONG_ORDER, cmd.span, text)
+    }
+
+    /// Notes, once, that a command has no effect.
+    pub(super) fn is_idle(&mut self, cmd: &Command, why: &str) {
         let text = format!("`{}` is without effect here: {why}", cmd.name.text);
         if self.noted.insert(cmd.name.text.clone()) {
             self.notes.push(Diagnostic::note(Code::NO_EFFECT, cmd.span, text));
         }
-        Ok(true)
     }
 
     /// `partition yes|no N command …`.
@@ -166,7 +165,7 @@ fn range(word: &str, of: usize) -> Option<(usize, usize)> {
 }
 
 /// `balance thresh x|y|z uniform|FRACTIONS … | shift dims iterations stop | rcb`, then options.
-fn balance(args: &mut Args) -> Result<()> {
+pub(super) fn balance(args: &mut Args) -> Result<()> {
     args.positive("the imbalance that is borne")?;
     let style = args.expect("a style: x, y, z, shift or rcb")?;
     match style.text.as_str() {

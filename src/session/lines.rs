@@ -1,5 +1,6 @@
 //! The declared lines of the session's own commands: read here, shown by the manual.
 
+pub use super::balancing::Statics;
 pub use super::commands::{Compatibility, Echoing, Logging, Print};
 pub use super::inert::{CommStyle, Package, Partition, Suffix};
 pub use super::info::Info;

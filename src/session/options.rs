@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The mode of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// Work it off.
+    /// Run it.
     #[default]
     Run,
     /// Read it and report every problem; change nothing, write nothing.

@@ -26,7 +26,7 @@ impl Session {
             let text =
                 "perigrain has no Python inside: the command `python` works where Python hosts the run";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
-            return Err(d.help("work the deck off from Python, with `perigrain.lammps().file(…)`").into());
+            return Err(d.help("run the deck from Python, with `perigrain.lammps().file(…)`").into());
         };
         if let Some(d) = perigrain_base::gate::forbids("a deck may not execute Python code") {
             return Err(d.at(span).into());

@@ -14,7 +14,7 @@ use crate::graph::spatial;
 use perigrain_base::comm;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::gate;
-use perigrain_fixes::Minimizing;
+use perigrain_fixes::{AtRest, Minimizing};
 use perigrain_lang::{Args, Command, Script, Word};
 use perigrain_output::thermo::{Finish, Section};
 use perigrain_pairs::{PLASTIC_GRAIN, TILES};
@@ -39,6 +39,8 @@ pub(super) enum Pass {
     Rerun,
     /// A minimization: fixes that do not act in it are left out, and the energy is read.
     Minimization,
+    /// Load steps: integrators are left out.
+    Statics,
 }
 
 /// The words of a `run` line.
@@ -217,7 +219,8 @@ impl Session {
     /// # Errors
     /// As there.
     pub(super) fn sealed(&mut self, span: Span, pass: Pass) -> Result<(StepPlan, Option<Reading>)> {
-        let minimizing = pass == Pass::Minimization;
+        // In both places are tried: nothing is integrated or booked.
+        let minimizing = matches!(pass, Pass::Minimization | Pass::Statics);
         let vars = Arc::new(self.vars.clone());
         let respa = self.respa().filter(|_| !minimizing).cloned();
         self.graph.computes.iter().for_each(|c| c.compute.particles_joined(&mut self.world));
@@ -257,7 +260,11 @@ impl Session {
             ledger::begin(&mut s);
         }
         crate::graph::dynamic::seal(&mut s)?;
-        let all = s.facts().filter(|(_, facts)| !minimizing || facts.minimizing == Minimizing::Acts);
+        let all = s.facts().filter(|(_, facts)| match pass {
+            Pass::Minimization => facts.minimizing == Minimizing::Acts,
+            Pass::Statics => !matches!(facts.at_rest, AtRest::Frees | AtRest::Idle | AtRest::Refused),
+            _ => true,
+        });
         let mut marks = ledger::Marks::default();
         for (f, _) in all.collect::<Vec<_>>() {
             s.at_fix(f.span, f.level, f.group.bit());
@@ -291,8 +298,9 @@ impl Session {
         let ops = restarts.ops(&self.graph, &mut s)?;
         s.add(ops, restarts.span);
         s.at(span);
-        let energy =
-            minimizing.then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always)).transpose()?;
+        let energy = (pass == Pass::Minimization)
+            .then(|| s.keyword_total("pe", span, Stage::EndOfStep, &When::Always))
+            .transpose()?;
         if !row_first {
             let row = self.graph.thermo.op(&mut s, self.options.log.clone())?;
             s.add(vec![row], span);

@@ -1,6 +1,6 @@
 //! fix addforce: a force added to each particle.
 
-use super::{AtomReference, Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
+use super::{AtRest, AtomReference, Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Param, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -137,7 +137,13 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

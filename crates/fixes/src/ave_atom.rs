@@ -1,7 +1,7 @@
 //! fix ave/atom: averages of per-atom values over time.
 
 use super::window::{Kept, Samples, Schedule, forget};
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, ValueRef, Word};
@@ -145,7 +145,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { counts_steps: true, ..Facts::default() }
+        Facts { at_rest: AtRest::Acts, counts_steps: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

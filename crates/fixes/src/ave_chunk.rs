@@ -3,7 +3,7 @@
 use super::ave_atom::{Input, Source};
 use super::ave_time::{Output, number_format};
 use super::window::{Ave, Averager, Due, Kept, Samples, Schedule, forget};
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::cformat::{Format, Value, general, shortest};
 use perigrain_base::math::vec3::sub;
@@ -324,7 +324,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { counts_steps: true, file: self.output.path(), ..Facts::default() }
+        Facts { at_rest: AtRest::Acts, counts_steps: true, file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

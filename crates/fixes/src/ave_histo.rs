@@ -4,7 +4,7 @@ use super::ave_atom::{Input, Source};
 use super::ave_time::{Mode, Output};
 use super::bins::{Beyond, Bins, Histogram};
 use super::window::{Ave, Averager, Due, Kept, Samples, Schedule, forget};
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::cformat::{general, shortest};
 use perigrain_computes::reduce::BIG;
@@ -331,7 +331,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { file: self.output.path(), ..Facts::default() }
+        Facts { at_rest: AtRest::Acts, file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -1,7 +1,7 @@
 //! fix ave/time: averages of global values over time, for other styles and a file.
 
 use super::window::{Ave, Averager, Kept, Samples, Schedule, forget};
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::cformat::{Format, Value};
 use perigrain_computes::chunk::{hold, let_go};
@@ -352,7 +352,7 @@ fn offer(w: &mut World, slot: SlotId, step: i64, means: &[f64], cols: usize, vec
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { counts_steps: true, file: self.output.path(), ..Facts::default() }
+        Facts { at_rest: AtRest::Acts, counts_steps: true, file: self.output.path(), ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

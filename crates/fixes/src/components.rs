@@ -23,6 +23,17 @@ impl Components {
         Self { group, force: force.map(|p| p.0.map(Into::into)), region: region.map(|r| r.0) }
     }
 
+    /// The components that are the number 0 for all particles of the group; `None` where one has another value, or a region chooses.
+    pub fn zeros(&self) -> Option<[bool; 3]> {
+        let zero = |p: &Option<Param>| match p {
+            None => Some(false),
+            Some(Param::Number(a)) if *a == 0.0 => Some(true),
+            Some(_) => None,
+        };
+        let [x, y, z] = &self.force;
+        Some([zero(x)?, zero(y)?, zero(z)?]).filter(|_| self.region.is_none())
+    }
+
     /// The particles it acts on, and where the component values are found during a run.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 //! speed.
 
 use super::resistance::{Factor, Scale};
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -108,7 +108,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
+        Facts { minimizing: Minimizing::Acts, at_rest: AtRest::Idle, has_level: true, ..Facts::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix drag: a force of constant strength towards a point.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
@@ -99,7 +99,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Absent, has_level: true, ..Facts::default() }
+        Facts { minimizing: Minimizing::Absent, at_rest: AtRest::Acts, has_level: true, ..Facts::default() }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix enforce2d: keeps a two-dimensional system in its plane.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
@@ -81,7 +81,11 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Holds([false, false, true]),
+            ..Facts::default()
+        }
     }
 }
 

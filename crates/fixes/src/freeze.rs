@@ -1,6 +1,6 @@
 //! fix freeze: holds grains in place.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::Vec3;
 use perigrain_lang::Args;
@@ -102,7 +102,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Absent, ..Facts::default() }
+        Facts { minimizing: Minimizing::Absent, at_rest: AtRest::Holds([true; 3]), ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {

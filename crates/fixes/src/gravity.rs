@@ -1,6 +1,6 @@
 //! fix gravity: the same acceleration for all particles.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::four::{Plain, has_avx2};
 use perigrain_base::math::lanes::Lanes;
@@ -288,7 +288,15 @@ impl Fix for Declared {
         };
         let (minimizing, pull) = (Minimizing::Absent, Some(pull));
         let disabled = self.disabled;
-        Facts { minimizing, pull, disabled, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing,
+            at_rest: AtRest::Acts,
+            pull,
+            disabled,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix halt: ends a run when a condition is met.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::comm::broadcast;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::cformat::shortest;
@@ -221,7 +221,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
+        Facts { minimizing: Minimizing::Acts, at_rest: AtRest::Acts, ..Facts::default() }
     }
 }
 

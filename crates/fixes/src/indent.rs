@@ -3,7 +3,7 @@
 mod form;
 mod words;
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use form::Form;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Param};
@@ -136,7 +136,13 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

@@ -80,7 +80,7 @@ mod window;
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, RefKind, ValueRef};
 pub use perigrain_styles::fix::{
-    Counted, Facts, Fix, FixStyle, MODIFY, Minimizing, Moves, Virial, no_option, options,
+    AtRest, Counted, Facts, Fix, FixStyle, MODIFY, Minimizing, Moves, Virial, no_option, options,
 };
 use perigrain_styles::words::{Kind, Value};
 use perigrain_styles::{BuildCx, Shape};

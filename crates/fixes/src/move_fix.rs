@@ -4,7 +4,7 @@ use super::elapsed::Elapsed;
 use super::lineforce::direction;
 use super::nve::half_step;
 use super::path::{Path, Readings};
-use super::{Facts, Fix, FixStyle, Moves, lying};
+use super::{AtRest, Facts, Fix, FixStyle, Moves, lying};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::body::Quat;
 use perigrain_base::math::vec3::{add, sub};
@@ -251,7 +251,11 @@ impl Fix for Declared {
             (None, true) => Moves::Freely,
             (None, false) => Moves::Prescribed,
         };
-        Facts { moves, needs_whole_steps, ..Facts::default() }
+        let at_rest = match moves {
+            Moves::Turns => AtRest::Refused,
+            _ => AtRest::Leads { components: self.path.given(), rest: free },
+        };
+        Facts { moves, needs_whole_steps, at_rest, ..Facts::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! fix nve: velocity Verlet at constant energy.
 
 use super::kick;
-use super::{Facts, Fix, FixStyle, Moves};
+use super::{AtRest, Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
@@ -69,7 +69,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { moves: Moves::Freely, ..Facts::default() }
+        Facts { moves: Moves::Freely, at_rest: AtRest::Frees, ..Facts::default() }
     }
 }
 

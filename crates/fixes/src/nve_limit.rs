@@ -1,7 +1,7 @@
 //! fix nve/limit: velocity Verlet with a limit on the displacement per step.
 
 use super::nve::half_step;
-use super::{Facts, Fix, FixStyle, Moves};
+use super::{AtRest, Facts, Fix, FixStyle, Moves};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::dot;
 use perigrain_base::par::{self, add};
@@ -142,7 +142,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { moves: Moves::Freely, ..Facts::default() }
+        Facts { moves: Moves::Freely, at_rest: AtRest::Frees, ..Facts::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! fix print: prints a line of text with current values every N steps.
 
 use super::ave_time::later;
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Result, Span};
 use perigrain_lang::{Args, RefKind, ValueRef};
 use perigrain_output::Sheet;
@@ -114,7 +114,11 @@ struct Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { file: self.file.as_ref().map(|(path, _)| path.clone()), ..Facts::default() }
+        Facts {
+            at_rest: AtRest::Acts,
+            file: self.file.as_ref().map(|(path, _)| path.clone()),
+            ..Facts::default()
+        }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -68,7 +68,7 @@ impl FixStyle for PythonInvoke {
         let Some(host) = cx.world.facts.get(*HOST).cloned() else {
             let text = "perigrain has no Python inside: `fix python/invoke` works where Python hosts the run";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, cx.span, text);
-            return Err(d.help("work the deck off from Python, with `perigrain.lammps().file(…)`").into());
+            return Err(d.help("run the deck from Python, with `perigrain.lammps().file(…)`").into());
         };
         if !cx.checking && !host.has(&function.value) {
             let text = format!("the program has no function `{}`", function.value);

@@ -1,7 +1,7 @@
 //! fix setforce: sets forces to given values.
 
 use super::components::Components;
-use super::{Facts, Fix, FixStyle, Minimizing, RegionId};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing, RegionId};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{BlockSums, Needs, Op, ParticleBlock, Room, Stage, Tick};
@@ -96,7 +96,8 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
+        let at_rest = self.components.zeros().map_or(AtRest::Refused, AtRest::Holds);
+        Facts { minimizing: Minimizing::Acts, at_rest, has_level: true, ..Facts::default() }
     }
 }
 

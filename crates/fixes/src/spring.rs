@@ -1,6 +1,6 @@
 //! fix spring: a spring between the centre of mass of a group and a point, or another group's centre.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
@@ -144,7 +144,13 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! fix spring/self: ties every particle to its initial position by a spring.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -147,7 +147,13 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

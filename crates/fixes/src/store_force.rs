@@ -1,6 +1,6 @@
 //! fix store/force: stores the forces as they are at this point of the fix list.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::Result;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage};
@@ -80,7 +80,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, ..Facts::default() }
+        Facts { minimizing: Minimizing::Acts, at_rest: AtRest::Acts, ..Facts::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! fix vector: accumulates values over a run.
 
 use super::window::forget;
-use super::{Facts, Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, ValueRef};
 use perigrain_plan::{Needs, Op, Stage, When};
@@ -82,7 +82,7 @@ impl Declared {
 
 impl Fix for Declared {
     fn facts(&self, _: &World) -> Facts {
-        Facts { counts_steps: true, ..Facts::default() }
+        Facts { at_rest: AtRest::Acts, counts_steps: true, ..Facts::default() }
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {

@@ -1,6 +1,6 @@
 //! fix viscous/nonlinear: the drag of a fluid on spheres, at any Reynolds number.
 
-use super::{Facts, Fix, FixStyle, Minimizing};
+use super::{AtRest, Facts, Fix, FixStyle, Minimizing};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, length};
 use perigrain_base::par;
@@ -108,7 +108,7 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, ..Facts::default() }
+        Facts { minimizing: Minimizing::Acts, at_rest: AtRest::Idle, has_level: true, ..Facts::default() }
     }
 }
 

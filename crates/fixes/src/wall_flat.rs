@@ -2,7 +2,7 @@
 
 use super::faces::{Face, Spot, Walls, check};
 use super::wall_law::{LAWS, Law, numbers};
-use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, Virial, needs_spheres, options};
+use super::{AtRest, Facts, Fix, FixStyle, MODIFY, Minimizing, Virial, needs_spheres, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
@@ -405,7 +405,13 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }
 

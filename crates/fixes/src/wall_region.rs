@@ -1,7 +1,7 @@
 //! fix wall/region: the surface of a region as a wall with normal forces and no friction.
 
 use super::wall_law::Law;
-use super::{Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
+use super::{AtRest, Facts, Fix, FixStyle, MODIFY, Minimizing, RegionId, Virial, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, scale};
 use perigrain_lang::Args;
@@ -215,6 +215,12 @@ impl Fix for Declared {
     }
 
     fn facts(&self, _: &World) -> Facts {
-        Facts { minimizing: Minimizing::Acts, has_level: true, has_energy: true, ..Facts::default() }
+        Facts {
+            minimizing: Minimizing::Acts,
+            at_rest: AtRest::Acts,
+            has_level: true,
+            has_energy: true,
+            ..Facts::default()
+        }
     }
 }

@@ -70,7 +70,7 @@ struct Zero {
 
 impl Pair for Zero {
     fn facts(&self) -> Facts {
-        Facts { name: "zero", ..Facts::default() }
+        Facts { name: "zero", balances: true, ..Facts::default() }
     }
 
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()> {

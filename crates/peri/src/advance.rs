@@ -39,6 +39,9 @@ impl Families {
         broken.clear();
         let some = agreed.map_or_else(|| self.list.is_strained(), |agreed| agreed.strained);
         self.find_all(view, cell, (share.flatten(), some), &mut broken);
+        if let Some(share) = self.breaking_share {
+            keep_weakest(&mut broken, share);
+        }
         if agreed.is_some_and(|agreed| agreed.breaks || agreed.strained) {
             broken = broken_everywhere(broken);
         }
@@ -98,4 +101,19 @@ impl Families {
         note(LIST, &found, &self.list.particle);
         self.scratch.candidates = found;
     }
+}
+
+/// Stretches over the critical one that differ by no more than this are equal: those of bonds that a symmetry maps to each other.
+const EQUAL: f64 = 1e-9;
+
+/// Keeps the bonds stretched most over their critical stretch, those that are as stretched, and a share of the others, the
+/// most stretched first; in their order.
+fn keep_weakest(broken: &mut Vec<Broken>, share: f64) {
+    let ratio = |broken: &Broken| broken.bond.stretch / broken.bond.s00;
+    let mut ratios: Vec<f64> = broken.iter().map(ratio).collect();
+    ratios.sort_unstable_by(|a, b| b.total_cmp(a));
+    let Some(most) = ratios.first().copied() else { return };
+    let some = (share * ratios.len() as f64).floor() as usize;
+    let limit = ratios.get(some).copied().map_or(most, |r| r.min(most)) * (1.0 - EQUAL);
+    broken.retain(|bond| ratio(bond) >= limit);
 }

@@ -134,6 +134,7 @@ impl Families {
             heat: 0.0,
             relaxing: None,
             counts_losses: false,
+            breaking_share: None,
             four_lanes: false,
             almost: vec![],
             weighed: None,

@@ -36,6 +36,21 @@ impl Families {
         par::reduce(view.x.len(), chunk, f64::min).filter(|dt| dt.is_finite())
     }
 
+    /// Calls `f` for each living bond once with its ends and its stiffness as a bond by itself [force/length]: c w V_i V_j/|ξ|, c
+    /// being 18K/(πδ⁴) for state-based laws.
+    pub fn each_spring(&self, kinds: &[u16], volumes: &[f64], mut f: impl FnMut([u32; 2], f64)) {
+        for i in 0..kinds.len().min(self.family_size.len()) {
+            let own = self.stiffness_of(i);
+            self.each_apart(i, |b, length| {
+                let j = b.partner as usize;
+                let Some(p) = self.table.get(kinds[i], kinds[j]).filter(|_| b.alive && i < j) else { return };
+                let weight = self.share_of(i, &b, length, p.horizon);
+                let factor = 0.5 * (own + self.stiffness_of(j));
+                f([i as u32, b.partner], factor * p.c * weight * volumes[i] * volumes[j] / length);
+            });
+        }
+    }
+
     /// The step h/√(K/ρ) of Hartmann et al. (2022, equations 41 and 42), h = V^⅓. `None` without bonds.
     pub fn sound_step(&self, view: &PeriView, density: &[f64], ftm2v: f64) -> Option<f64> {
         let step = |i: usize| {

@@ -31,6 +31,29 @@ pub enum Minimizing {
     Acts,
 }
 
+/// What a fix does in load steps of `statics`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AtRest {
+    /// It cannot act in them, so that it is refused.
+    #[default]
+    Refused,
+    /// Its particles move freely, as forces require.
+    Frees,
+    /// It places these components of its particles on a path; the others move freely if another fix or `rest` says so.
+    Leads {
+        /// The components on the path.
+        components: [bool; 3],
+        /// Whether the others move freely.
+        rest: bool,
+    },
+    /// It sets these components of the force to 0: they are held.
+    Holds([bool; 3]),
+    /// Its force depends on places and time alone.
+    Acts,
+    /// It does nothing there: its force depends on velocities.
+    Idle,
+}
+
 /// How a fix moves particles, and what becomes of their orientations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Moves {
@@ -58,6 +81,8 @@ pub struct Facts {
     pub deforms: [bool; 6],
     /// What becomes of it in a minimization; as in LAMMPS, only some that change forces act.
     pub minimizing: Minimizing,
+    /// What it does in load steps of `statics`.
+    pub at_rest: AtRest,
     /// `fix_modify respa` may choose the level of steps in which it adds its force.
     pub has_level: bool,
     /// Why it cannot act in steps of several lengths (`run_style respa`), if it cannot.

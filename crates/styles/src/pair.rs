@@ -47,6 +47,8 @@ pub struct Facts {
     pub coefficients: &'static [&'static str],
     /// Whether `pair_modify mix` chooses how it mixes types.
     pub mixes: bool,
+    /// Whether its forces follow from places alone while bonds live, so that `statics` finds places without force.
+    pub balances: bool,
 }
 
 /// How the numbers of two types make those between them (`pair_modify mix`).

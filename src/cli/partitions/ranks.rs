@@ -77,7 +77,7 @@ pub fn first(o: &Options, ranks: &Ranks) -> std::io::Result<u8> {
     Ok(worst)
 }
 
-/// Works partitions off for the first rank until it sends this one home; the exit code.
+/// Runs partitions for the first rank until it sends this one home; the exit code.
 pub fn serve(ranks: &Ranks) -> u8 {
     let mut team = match Team::new() {
         Ok(team) => team,

@@ -33,7 +33,7 @@ pub struct Subject<'a> {
     pub options: &'a Options,
     /// The deck's text.
     pub text: String,
-    /// The session that has worked it off.
+    /// The session that has run it.
     pub session: &'a Session,
     /// How that ended.
     pub outcome: &'a Result<Ending>,

@@ -102,6 +102,7 @@ fn of_line(file: &File, line: &perigrain_lang::RawLine) -> Vec<Symbol> {
     let acts = [
         "run",
         "minimize",
+        "statics",
         "rerun",
         "read_data",
         "read_restart",
@@ -111,7 +112,11 @@ fn of_line(file: &File, line: &perigrain_lang::RawLine) -> Vec<Symbol> {
         "include",
     ];
     if acts.contains(&first.text.as_str()) {
-        let kind = if ["run", "minimize", "rerun"].contains(&first.text.as_str()) { EVENT } else { STRING };
+        let kind = if ["run", "minimize", "statics", "rerun"].contains(&first.text.as_str()) {
+            EVENT
+        } else {
+            STRING
+        };
         let chosen = first.span.start as usize..first.span.end as usize;
         return vec![Symbol {
             name: format!("{} {}", first.text, short(&rest(1))),

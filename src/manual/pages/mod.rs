@@ -54,6 +54,7 @@ pub const COMMANDS: &[Entry] = &[
     thermo::THERMO_MODIFY,
     session::RUN,
     session::MINIMIZE,
+    session::STATICS,
     session::PRINT,
     session::LOG,
     session::ECHO,

@@ -89,7 +89,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) runs a deck. The 
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
     - `-ranks N`: N processes of this machine run the deck together, as `mpirun -n N perigrain -in DECK` does with any MPI on one machine or several (`perigrain ranks` says which library \
     connects them, and how fast); results are the same bits for any N, files are written by the first rank. `sweep`, `bench` and `-partition` share their runs out to ranks instead;\n\
-    - `-partition MxN …`, `-p`: works the deck off M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); under `mpirun` or with `-ranks` each rank has some of them; `-plog FILE|none`, \
+    - `-partition MxN …`, `-p`: runs the deck M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); under `mpirun` or with `-ranks` each rank has some of them; `-plog FILE|none`, \
     `-pl`, and `-pscreen FILE|none`, `-ps`: their logs and screens (`log.lammps.0` …, `screen.0` …);\n\
     - `-safe`: keeps the deck in its own folder, without `shell` and environment and with limits to all it uses, for [decks of \
     others](../safe.md); `-limit memory|steps|lines|files|pixels N` is the same with another limit (memory in MB);\n\

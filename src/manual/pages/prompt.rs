@@ -25,7 +25,7 @@ pub(super) const PROMPT: Entry = (
     },
 );
 
-const TEXT: &str = "`perigrain` on a terminal, or `perigrain repl`, reads lines and works each off at once. Every command of \
+const TEXT: &str = "`perigrain` on a terminal, or `perigrain repl`, reads lines and carries each out at once. Every command of \
     a deck works. A line counts wholly or not at all: if it is refused or fails, a run included, the scene is as it was \
     before it, only files that were written stay. `perigrain repl < FILE` does the same without a terminal: mistakes are \
     shown, it continues after them, and the exit code is 1 if there was one.\n\n\

@@ -162,7 +162,7 @@ pub struct Vars {
     events: Arc<AtomicU64>,
     /// Environment variables set by `shell putenv`.
     environment: Arc<BTreeMap<String, String>>,
-    /// Which of several partitions works the deck off, if there are several.
+    /// Which of several partitions runs the deck, if there are several.
     partition: Option<Partition>,
     /// The program that has functions in Python, if one hosts the session.
     program: Option<Arc<dyn python::Functions>>,

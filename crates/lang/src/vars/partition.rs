@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// Takes the next turn of a round, given the round, counted from 0.
 pub type Turn = Arc<dyn Fn(u64) -> std::io::Result<usize> + Send + Sync>;
 
-/// Which of several partitions works the deck off.
+/// Which of several partitions runs the deck.
 #[derive(Clone)]
 pub struct Partition {
     /// Its number, from 0.

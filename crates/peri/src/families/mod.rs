@@ -101,6 +101,10 @@ pub struct Families {
     /// Count both.
     #[serde(skip)]
     pub counts_losses: bool,
+    /// Of the bonds beyond their limit the one that is stretched most, over its critical stretch, breaks, with those stretched
+    /// as much and this share of the others; `None`: all.
+    #[serde(skip)]
+    pub breaking_share: Option<f64>,
     /// Take kernels of four lanes even where the processor has eight: to compare them.
     #[serde(skip)]
     pub four_lanes: bool,

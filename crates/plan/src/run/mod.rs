@@ -5,6 +5,7 @@ pub mod levels;
 pub mod minimize;
 mod path;
 pub mod staggered;
+pub mod statics;
 pub mod verlet;
 
 use crate::StepPlan;

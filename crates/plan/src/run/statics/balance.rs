@@ -1,0 +1,334 @@
+//! From a place out of balance to one in balance: Newton's method over the ops of a plan.
+
+use super::ledger::Books;
+use super::{Body, Breaking, Goal, Numbers};
+use crate::run::verlet::tick;
+use crate::{Stage, StepPlan, Tick};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use perigrain_base::par;
+use perigrain_statics::coarse::Coarse;
+use perigrain_statics::network::Network;
+use perigrain_statics::pcg::{self, Preconditioner};
+use perigrain_statics::precond::Blocks;
+use perigrain_statics::six::Six;
+use perigrain_world::World;
+use std::cell::RefCell;
+
+/// Displacements that forces are differentiated with, in distances of neighbours: stretches of 1e-6 are far above
+/// rounding and far below where bonds bend the force.
+const SMALL: f64 = 1e-6;
+/// Newton's steps in which a body has to be balanced.
+const STEPS: usize = 40;
+/// Products of one linear system at most.
+const PRODUCTS: usize = 2000;
+/// How often a step is halved where its end is farther from balance than its beginning.
+const HALVINGS: usize = 30;
+/// Where so little is left over reactions and loads and two steps in a row do not halve it, rounding is what is left: stretches
+/// of 1e-14 count as none, beside those of 1e-7 and more that loads make.
+const ROUNDING: f64 = 1e-6;
+/// How far a step moves a particle at most, in distances of neighbours.
+const FARTHEST: f64 = 0.5;
+/// How exactly the first linear system of a load step is solved, over its load; later ones more so (Eisenstat and Walker).
+const FORCING: f64 = 0.1;
+/// A step past the end of which the force along it points back by more than this part is too long.
+const BACK: f64 = 0.5;
+
+/// A body that is balanced load step by load step.
+pub(super) struct Balance<'a> {
+    pub plan: &'a mut StepPlan,
+    pub w: &'a mut World,
+    pub body: Body,
+    pub goal: Goal,
+    pub ledger: Books,
+    blocks: Blocks,
+    coarse: Option<Coarse>,
+    /// How far led particles move in this load step.
+    path: Vec<[f64; 3]>,
+    /// How the free ones moved in the last one: where the solution of the next one begins.
+    last: Vec<Six>,
+}
+
+impl<'a> Balance<'a> {
+    /// A body as it is.
+    pub fn new(plan: &'a mut StepPlan, w: &'a mut World, body: Body, goal: Goal) -> Self {
+        let blocks = Blocks::of_network(&body.network, &body.held);
+        let last = vec![[0.0; 6]; w.n()];
+        Self { plan, w, body, goal, ledger: Books::default(), blocks, coarse: None, path: vec![], last }
+    }
+
+    /// Takes note of the bonds that live now.
+    pub fn renew(&mut self, network: Network) {
+        self.blocks = Blocks::of_network(&network, &self.body.held);
+        (self.body.network, self.coarse) = (network, None);
+    }
+
+    /// Moves the clock, and finds how far what stands on paths moves; it is put back to where it was.
+    pub fn lead(&mut self) -> Result<()> {
+        self.w.clock.step += 1;
+        let t = tick(self.w, false);
+        let from = self.w.particles.x.clone();
+        self.plan.run(self.w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate])?;
+        self.w.particles.v.fill([0.0; 3]);
+        let (x, body) = (&mut self.w.particles.x, &self.body);
+        self.path = vec![[0.0; 3]; x.len()];
+        for i in 0..x.len() {
+            for d in (0..3).filter(|d| body.leads(i, *d)) {
+                self.path[i][d] = x[i][d] - from[i][d];
+            }
+        }
+        x.copy_from_slice(&from);
+        Ok(())
+    }
+
+    /// Follows what stands on paths, by the tangent, and balances.
+    pub fn follow(&mut self, made: &mut Numbers) -> Result<()> {
+        self.residual(true)?;
+        let (n, base) = (self.w.n(), self.w.particles.x.clone());
+        let mut load = self.unbalanced();
+        let most = self.path.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
+        if most > 0.0 {
+            // What the paths pull, by a small part of them: K of the free particles beside the led ones.
+            let part = (SMALL * self.body.size / most).min(1.0);
+            let ahead = self.forces_at(&base, part)?;
+            let behind = self.forces_at(&base, -part)?;
+            for i in 0..n {
+                for d in 0..3 {
+                    load[i][d] += (ahead[i][d] - behind[i][d]) / (2.0 * part);
+                }
+                load[i] = self.blocks.free(i, &load[i]);
+            }
+        }
+        let mut field = std::mem::take(&mut self.last);
+        field.resize(n, [0.0; 6]);
+        self.solve(&base, &load, &mut field, FORCING, made)?;
+        self.w.particles.x = base;
+        for i in 0..n {
+            for d in 0..3 {
+                let moved = if self.body.leads(i, d) { self.path[i][d] } else { field[i][d] };
+                self.w.particles.x[i][d] += moved;
+            }
+        }
+        // The next load step begins with this one's motion.
+        self.last = field;
+        self.balance(made)
+    }
+
+    /// Newton's steps from where the particles are to balance.
+    pub fn balance(&mut self, made: &mut Numbers) -> Result<()> {
+        self.residual(true)?;
+        let mut r = self.unbalanced();
+        let mut size = norm(&r);
+        let (mut forcing, mut idle) = (FORCING, 0);
+        for _ in 0..STEPS {
+            let scale = self.ledger.scale(self.w, &self.body).max(f64::MIN_POSITIVE);
+            made.force = size / scale;
+            if size == 0.0 || made.force <= self.goal.tol || (idle > 1 && made.force <= ROUNDING) {
+                return Ok(());
+            }
+            forcing = forcing.max(0.1 * self.goal.tol * scale / size).min(FORCING);
+            let base = self.w.particles.x.clone();
+            let mut field = vec![[0.0; 6]; r.len()];
+            self.solve(&base, &r, &mut field, forcing, made)?;
+            made.newton += 1;
+            let mut along = inner(&r, &field);
+            if along <= 0.0 {
+                // The body gives way at once: down the force, as bonds by themselves resist.
+                par::each(&mut field[..], |start, rows: &mut [Six]| {
+                    for (k, row) in (start..).zip(rows) {
+                        *row = self.blocks.apply(k, &r[k]);
+                    }
+                });
+                along = inner(&r, &field);
+            }
+            let most = field.iter().flat_map(|u| &u[..3]).fold(0.0, |m: f64, a| m.max(a.abs()));
+            let mut part =
+                if most > FARTHEST * self.body.size { FARTHEST * self.body.size / most } else { 1.0 };
+            let before = size;
+            for halving in 0.. {
+                self.place(&base, &field, part);
+                self.residual(true)?;
+                r = self.unbalanced();
+                size = norm(&r);
+                let not_past = inner(&r, &field) >= -BACK * along && halving < HALVINGS / 2;
+                if size < before || (size.is_finite() && not_past) {
+                    break;
+                }
+                if halving == HALVINGS {
+                    return Err(self.stuck(made));
+                }
+                part *= 0.5;
+            }
+            forcing = (size / before).powi(2).clamp(1e-4, FORCING);
+            idle = if size > 0.5 * before { idle + 1 } else { 0 };
+        }
+        Err(self.stuck(made))
+    }
+
+    fn stuck(&self, made: &Numbers) -> Diagnostics {
+        let text = format!(
+            "load step {} cannot be balanced: after {} of Newton's steps {:.1e} of the reactions are left",
+            self.w.clock.step - self.w.clock.first,
+            made.newton,
+            made.force
+        );
+        let d = Diagnostic::error(Code::HALTED, None, text);
+        d.help("more load steps, fewer loads at a time, or a `run` where the body gives way").into()
+    }
+
+    /// Looks at an equilibrium: what is remembered is remembered, what breaks breaks. The number of bonds that broke; where none
+    /// did, output follows.
+    pub fn settle(&mut self) -> Result<usize> {
+        let mut t = tick(self.w, false);
+        self.plan.request_sums(&mut t);
+        (t.energy, t.atom_energy) = (true, true);
+        let bonds = self.w.bonds.list.len();
+        if let Some(families) = &mut *self.w.families {
+            families.breaking_share = self.goal.breaking.share();
+            families.breaking_enabled &= self.goal.breaking != Breaking::No;
+        }
+        self.w.slots.invalidate();
+        self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force])?;
+        self.ledger.inner(self.w, &self.body);
+        self.plan.run(self.w, &t, &[Stage::PostForce])?;
+        if let Some(families) = &mut *self.w.families {
+            families.breaking_share = None;
+        }
+        self.plan.run(self.w, &t, &[Stage::EndOfStep])?;
+        self.ledger.balanced(self.w, &self.body);
+        let of_families = self.w.families.as_ref().map_or(0, |families| families.broken().len());
+        let broken = of_families + bonds.saturating_sub(self.w.bonds.list.len());
+        if broken > 0 {
+            self.look_at_energy()?;
+            self.ledger.broken(self.w, &self.body);
+            return Ok(broken);
+        }
+        self.plan.run(self.w, &t, &[Stage::Output])?;
+        Ok(0)
+    }
+
+    /// Forces and energies here; nothing breaks or is remembered.
+    fn look_at_energy(&mut self) -> Result<()> {
+        self.w.slots.invalidate();
+        let mut t = Tick { trial: true, ..tick(self.w, false) };
+        self.plan.request_sums(&mut t);
+        (t.energy, t.atom_energy) = (true, true);
+        self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force, Stage::PostForce])
+    }
+
+    /// Forces where the particles are. With `lists`, lists of neighbours are made anew where they have to be.
+    fn residual(&mut self, lists: bool) -> Result<()> {
+        let t = Tick { trial: true, ..tick(self.w, false) };
+        let before: &[Stage] = if lists {
+            &[Stage::Neighbor, Stage::PreForce, Stage::Force]
+        } else {
+            &[Stage::PreForce, Stage::Force]
+        };
+        self.plan.run(self.w, &t, before)?;
+        if lists {
+            self.ledger.inner(self.w, &self.body);
+        }
+        self.plan.run(self.w, &t, &[Stage::PostForce])
+    }
+
+    /// The forces on free components [force].
+    fn unbalanced(&self) -> Vec<Six> {
+        let (f, body, blocks) = (&self.w.particles.f, &self.body, &self.blocks);
+        let mut out = vec![[0.0; 6]; f.len()];
+        par::each((&mut out[..], &f[..], &body.weight[..]), |start, (out, f, weight)| {
+            for (k, out) in out.iter_mut().enumerate() {
+                let [x, y, z] = f[k].map(|a| a * weight[k]);
+                *out = blocks.free(start + k, &[x, y, z, 0.0, 0.0, 0.0]);
+            }
+        });
+        out
+    }
+
+    /// Forces where led particles have moved from `base` by a part of their path.
+    fn forces_at(&mut self, base: &[[f64; 3]], part: f64) -> Result<Vec<Six>> {
+        for ((x, from), path) in self.w.particles.x.iter_mut().zip(base).zip(&self.path) {
+            *x = std::array::from_fn(|d| from[d] + part * path[d]);
+        }
+        self.residual(false)?;
+        Ok(self.unbalanced())
+    }
+
+    fn place(&mut self, base: &[[f64; 3]], field: &[Six], part: f64) {
+        for ((x, from), u) in self.w.particles.x.iter_mut().zip(base).zip(field) {
+            *x = std::array::from_fn(|d| from[d] + part * u[d]);
+        }
+    }
+
+    /// Solves K u = load with the tangent stiffness at `base`, from `field` on, until `forcing` of the load is left.
+    fn solve(
+        &mut self,
+        base: &[[f64; 3]],
+        load: &[Six],
+        field: &mut [Six],
+        forcing: f64,
+        made: &mut Numbers,
+    ) -> Result<()> {
+        let (size, goal) = (SMALL * self.body.size, forcing * norm(load));
+        let (blocks, network) = (std::mem::take(&mut self.blocks), std::mem::take(&mut self.body.network));
+        let parts_of = |blocks: &Blocks| Coarse::of_network(&network, blocks);
+        let coarse = self.coarse.take();
+        let me = RefCell::new(&mut *self);
+        let (failed, products) = (RefCell::new(None), RefCell::new(0));
+        let product = |p: &[Six], out: &mut [Six]| {
+            let most = p.iter().flat_map(|u| &u[..3]).fold(0.0, |m: f64, a| m.max(a.abs()));
+            if most == 0.0 || failed.borrow().is_some() {
+                out.fill([0.0; 6]);
+                return;
+            }
+            *products.borrow_mut() += 1;
+            let step = size / most;
+            let mut me = me.borrow_mut();
+            let sides = [step, -step].map(|step| {
+                for ((x, from), u) in me.w.particles.x.iter_mut().zip(base).zip(p) {
+                    *x = std::array::from_fn(|d| from[d] + step * u[d]);
+                }
+                me.residual(false).map(|()| me.w.particles.f.clone())
+            });
+            match sides {
+                [Ok(ahead), Ok(behind)] => {
+                    let weight = &me.body.weight;
+                    let columns = (&mut *out, &ahead[..], &behind[..], &weight[..]);
+                    par::each(columns, |_, (out, ahead, behind, weight)| {
+                        for (k, out) in out.iter_mut().enumerate() {
+                            let of = |d: usize| (behind[k][d] - ahead[k][d]) * weight[k] / (2.0 * step);
+                            *out = [of(0), of(1), of(2), 0.0, 0.0, 0.0];
+                        }
+                    });
+                }
+                [Err(e), _] | [_, Err(e)] => {
+                    *failed.borrow_mut() = Some(e);
+                    out.fill([0.0; 6]);
+                }
+            }
+        };
+        let make = || parts_of(&blocks);
+        let mut by = match network.bonds() {
+            0 => Preconditioner::plain(&blocks),
+            _ => Preconditioner::again(&blocks, &make, coarse),
+        };
+        let solved = pcg::solve(product, &mut by, Some(load), field, 0.0, PRODUCTS, |progress| {
+            progress.residual <= goal
+        });
+        let coarse = by.kept(&solved);
+        let (failed, products) = (failed.into_inner(), products.into_inner());
+        (self.coarse, self.blocks, self.body.network) = (coarse, blocks, network);
+        made.products += products;
+        self.w.particles.x.copy_from_slice(base);
+        match failed {
+            Some(e) => Err(e),
+            None => Ok(()),
+        }
+    }
+}
+
+fn norm(r: &[Six]) -> f64 {
+    inner(r, r).sqrt()
+}
+
+fn inner(a: &[Six], b: &[Six]) -> f64 {
+    par::sum(a.len(), |k| a[k][0] * b[k][0] + a[k][1] * b[k][1] + a[k][2] * b[k][2])
+}

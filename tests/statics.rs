@@ -1,0 +1,185 @@
+//! Load steps of solids: equilibria, their work, cracks that grow at equilibria, and runs behind them.
+
+use std::process::Command;
+
+/// A bar of glass of 14 x 6 x 4 points with a notch in the middle, its left end held, its right end pulled by 1 micrometre in
+/// each unit of time; `LAW` and `STEPS` are filled in.
+const BAR: &str = "\
+units si
+atom_style peri
+boundary s s s
+lattice sc 1.0e-3
+region world block -0.001 0.015 -0.001 0.007 -0.001 0.005 units box
+region bar block 0 0.0135 0 0.0055 0 0.0035 units box
+region notch block 0.0065 0.0075 -1 0.0024 INF INF units box
+region left block -1 0.0014 INF INF INF INF units box
+region right block 0.0116 1 INF INF INF INF units box
+create_box 1 world
+create_atoms 1 region bar
+delete_atoms region notch
+LAW
+set group all density 2440
+set group all volume 1.0e-9
+peri_modify force newton
+group lo region left
+group hi region right
+group rest subtract all lo hi
+fix 1 all nve
+fix base lo move linear 0 0 0
+fix pull hi move linear 1.0e-6 0 0
+timestep 1
+thermo 1
+thermo_style custom step time pe ke
+thermo_modify format float %23.17g
+STEPS
+";
+
+const PMB: &str = "pair_style peri/pmb\npair_coeff 1 1 3.05e21 3.0151e-3 S00 0.0";
+const LPS: &str = "pair_style peri/lps\npair_coeff 1 1 4.4e10 3.0e10 3.0151e-3 S00 0.0";
+
+fn deck(law: &str, s00: &str, steps: &str) -> String {
+    BAR.replace("LAW", &law.replace("S00", s00)).replace("STEPS", steps)
+}
+
+/// Standard output and error, and whether it went well.
+fn run_with(deck: &str, words: &[&str]) -> (String, bool) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("in.deck"), deck).unwrap();
+    let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
+        .args(["-in", "in.deck", "-log", "none"])
+        .args(words)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
+    (text, out.status.success())
+}
+
+fn run(deck: &str) -> String {
+    let (text, well) = run_with(deck, &[]);
+    assert!(well, "{text}");
+    text
+}
+
+/// The numbers behind a label in printed lines.
+fn printed(text: &str, label: &str) -> Vec<f64> {
+    let of = |line: &str| -> Option<Vec<f64>> {
+        let rest = line.strip_prefix(label)?;
+        Some(rest.split_whitespace().filter_map(|word| word.parse().ok()).collect())
+    };
+    text.lines().filter_map(of).next_back().unwrap_or_else(|| panic!("no `{label}` in\n{text}"))
+}
+
+/// Work, change of energy, released and relaxed energy of all load steps.
+fn ledger(text: &str) -> [f64; 4] {
+    let line = text.lines().rev().find(|line| line.trim_start().starts_with("Work =")).unwrap();
+    let numbers: Vec<f64> = line.split(['=', '+']).filter_map(|word| word.trim().parse().ok()).collect();
+    numbers.try_into().unwrap()
+}
+
+/// `minimize` from there finds nothing left to do: the energy that it finds differs by 1e-12 of it, where an unbalanced force of
+/// 1e-6 of the reactions could give up (1e-6)². Both laws.
+#[test]
+fn minimize_finds_no_lower_energy() {
+    for law in [PMB, LPS] {
+        let steps = "statics 3 tol 1.0e-7\nprint \"E $(pe:%.15g)\"\nfix h lo setforce 0 0 0\nfix k hi setforce 0 0 0\n\
+                     min_style cg\nmin_modify dmax 1.0e-7\nminimize 0 1.0e-9 200 400\nprint \"M $(pe:%.15g)\"";
+        let text = run(&deck(law, "1.0", steps));
+        let (found, least) = (printed(&text, "E ")[0], printed(&text, "M ")[0]);
+        assert!(found > 0.0 && (found - least).abs() < 1e-12 * found, "{law}: {found} {least}");
+    }
+}
+
+/// Work is the change of energy where nothing breaks: by the mean of forces at both ends of a load step it is exact but for the
+/// third order in the strain of a step (some 1e-4 here, so 1e-8 of the energy).
+#[test]
+fn work_is_the_energy_of_an_elastic_body() {
+    for law in [PMB, LPS] {
+        let text = run(&deck(law, "1.0", "statics 4"));
+        let [work, energy, released, relaxed] = ledger(&text);
+        assert!(work > 0.0 && released == 0.0, "{text}");
+        assert!((work - energy - relaxed).abs() < 1e-7 * work, "{text}");
+        assert!(relaxed.abs() < 1e-6 * work, "{text}");
+    }
+}
+
+/// A bar that breaks gives back what it took: W = dU + D + R to ten times the tolerance; bonds that break set energy free, and no
+/// equilibrium behind a break has more energy than the one before it.
+#[test]
+fn a_notched_bar_tears_and_the_ledger_closes() {
+    for (law, way) in [(PMB, "one"), (PMB, "batch 0.5"), (PMB, "all"), (LPS, "one")] {
+        let text = run(&deck(law, "2.0e-4", &format!("statics 8 break {way}")));
+        let [work, energy, released, relaxed] = ledger(&text);
+        let broken = printed(&text, "  Bonds broken =")[0];
+        assert!(broken > 20.0, "{law} {way}: {text}");
+        assert!(released > 0.0 && relaxed > 0.0, "{law} {way}: {text}");
+        assert!((work - energy - released - relaxed).abs() < 1e-5 * work, "{law} {way}: {text}");
+        // Torn: what is left is far below what was put in.
+        assert!(energy < 0.2 * work, "{law} {way}: {text}");
+    }
+}
+
+/// Loads that nothing moves: under its own weight a column presses its foot with m g, and the work of gravity is twice its
+/// energy (Clapeyron) where load steps make the weight grow from 0.
+#[test]
+fn weight_that_grows_works_twice_the_energy() {
+    let steps =
+        "unfix pull\nvariable g equal 1.0e4*time/4\nfix weight all gravity v_g vector 1 0 0\nstatics 4";
+    let text = run(&deck(PMB, "1.0", steps));
+    let [work, energy, ..] = ledger(&text);
+    assert!(work > 0.0 && (work / energy - 1.0).abs() < 1e-6, "{text}");
+}
+
+/// A run behind load steps finds nothing to do: its kinetic energy stays below 1e-10 of the energy.
+#[test]
+fn a_run_behind_load_steps_stays_at_rest() {
+    let steps = "statics 2 tol 1.0e-7\nunfix pull\nunfix base\nfix h lo setforce 0 0 0\nfix k hi setforce 0 0 0\ntimestep 5.0e-8\nthermo 200\n\
+                 run 200\nprint \"K $(ke:%.15g) $(pe:%.15g)\"";
+    let text = run(&deck(PMB, "1.0", steps));
+    let numbers = printed(&text, "K ");
+    assert!(numbers[0] < 1e-10 * numbers[1], "{numbers:?}");
+}
+
+/// The same bytes for any number of threads, cracks included; and for ranks, each of which balances the whole body.
+#[test]
+fn threads_and_ranks_leave_the_same_bits() {
+    let steps = "statics 6 break one\nwrite_dump all custom end.txt id x y z modify format float %.17g\nshell cat end.txt";
+    let clean = |text: String| -> String {
+        let timed = |line: &&str| {
+            !["thread", "Loop time", "CPU use", "Total wall", "|"].iter().any(|w| line.contains(w))
+        };
+        // The last column of the table of load steps is their time.
+        text.lines()
+            .filter(timed)
+            .filter(|line| line.split_whitespace().count() != 9)
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    let deck = deck(PMB, "2.0e-4", steps);
+    let one = clean(run_with(&deck, &["-threads", "1"]).0);
+    assert!(one.contains("ITEM: ATOMS"), "{one}");
+    for words in [&["-threads", "2"][..], &["-threads", "7"]] {
+        let other = clean(run_with(&deck, words).0);
+        assert!(other == one, "{words:?}\n{other}\n{one}");
+    }
+}
+
+/// What load steps cannot be made with is refused by name.
+#[test]
+fn what_cannot_be_balanced_is_refused() {
+    for (steps, wanted) in [
+        ("unfix base\nunfix pull\nstatics 1", "nothing holds the piece of 324 particles"),
+        ("unfix 1\nstatics 1", "no particle moves freely"),
+        ("fix heat all langevin 1 1 1 1\nstatics 1", "fix langevin cannot act in the load steps"),
+        ("statics 0", "the number of load steps"),
+        ("statics 1 break none", "break"),
+        ("statics 1 break batch 2", "the share"),
+        ("statics 1 tol 0", "the tolerance"),
+    ] {
+        let (text, well) = run_with(&deck(PMB, "1.0", steps), &[]);
+        assert!(!well && text.contains(wanted), "{steps}: {text}");
+    }
+    let law = "pair_style peri/eps\npair_coeff 1 1 4.4e10 3.0e10 3.0151e-3 1.0 0.0 1.0e8";
+    let (text, well) = run_with(&deck(law, "", "statics 1"), &[]);
+    assert!(!well && text.contains("does not find equilibria under pair_style peri/eps"), "{text}");
+}
