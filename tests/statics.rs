@@ -11,9 +11,9 @@ boundary s s s
 lattice sc 1.0e-3
 region world block -0.001 0.015 -0.001 0.007 -0.001 0.005 units box
 region bar block 0 0.0135 0 0.0055 0 0.0035 units box
-region notch block 0.0065 0.0075 -1 0.0024 INF INF units box
-region left block -1 0.0014 INF INF INF INF units box
-region right block 0.0116 1 INF INF INF INF units box
+region notch block 0.0065 0.0075 -1 0.0024 -1 1 units box
+region left block -1 0.0014 -1 1 -1 1 units box
+region right block 0.0116 1 -1 1 -1 1 units box
 create_box 1 world
 create_atoms 1 region bar
 delete_atoms region notch
@@ -25,8 +25,8 @@ group lo region left
 group hi region right
 group rest subtract all lo hi
 fix 1 all nve
-fix base lo move linear 0 0 0
-fix pull hi move linear 1.0e-6 0 0
+fix base lo move linear 0 0 0 units box
+fix pull hi move linear 1.0e-6 0 0 units box
 timestep 1
 thermo 1
 thermo_style custom step time pe ke
@@ -70,8 +70,8 @@ fn printed(text: &str, label: &str) -> Vec<f64> {
     text.lines().filter_map(of).next_back().unwrap_or_else(|| panic!("no `{label}` in\n{text}"))
 }
 
-/// Work, change of energy, released and relaxed energy of all load steps.
-fn ledger(text: &str) -> [f64; 4] {
+/// Work, change of energy, released and relaxed energy and the error of all load steps.
+fn ledger(text: &str) -> [f64; 5] {
     let line = text.lines().rev().find(|line| line.trim_start().starts_with("Work =")).unwrap();
     let numbers: Vec<f64> = line.split(['=', '+']).filter_map(|word| word.trim().parse().ok()).collect();
     numbers.try_into().unwrap()
@@ -90,39 +90,38 @@ fn minimize_finds_no_lower_energy() {
     }
 }
 
-/// Work is the change of energy where nothing breaks: by the mean of forces at both ends of a load step it is exact but for the
-/// third order in the strain of a step (some 1e-4 here, so 1e-8 of the energy).
+/// Work is the change of energy where nothing breaks. The mean of forces at both ends of a load step is exact for forces that
+/// are linear in its strain; those of bonds that turn are so but for a part of that strain, which is 1e-4 here.
 #[test]
 fn work_is_the_energy_of_an_elastic_body() {
     for law in [PMB, LPS] {
         let text = run(&deck(law, "1.0", "statics 4"));
-        let [work, energy, released, relaxed] = ledger(&text);
-        assert!(work > 0.0 && released == 0.0, "{text}");
-        assert!((work - energy - relaxed).abs() < 1e-7 * work, "{text}");
-        assert!(relaxed.abs() < 1e-6 * work, "{text}");
+        let [work, energy, released, relaxed, error] = ledger(&text);
+        assert!(work > 0.0 && released == 0.0 && relaxed == 0.0, "{text}");
+        assert!((work - energy).abs() < 1e-4 * work && error.abs() < 1e-4 * work, "{text}");
     }
 }
 
-/// A bar that breaks gives back what it took: W = dU + D + R to ten times the tolerance; bonds that break set energy free, and no
-/// equilibrium behind a break has more energy than the one before it.
+/// A bar that breaks gives back what it took: W = dU + D + R but for the mean of forces in load steps (as above), with energy set
+/// free by bonds and given up between equilibria, whichever of the bonds beyond their limit break first.
 #[test]
 fn a_notched_bar_tears_and_the_ledger_closes() {
     for (law, way) in [(PMB, "one"), (PMB, "batch 0.5"), (PMB, "all"), (LPS, "one")] {
         let text = run(&deck(law, "2.0e-4", &format!("statics 8 break {way}")));
-        let [work, energy, released, relaxed] = ledger(&text);
+        let [work, energy, released, relaxed, error] = ledger(&text);
         let broken = printed(&text, "  Bonds broken =")[0];
         assert!(broken > 20.0, "{law} {way}: {text}");
         assert!(released > 0.0 && relaxed > 0.0, "{law} {way}: {text}");
-        assert!((work - energy - released - relaxed).abs() < 1e-5 * work, "{law} {way}: {text}");
+        assert!((work - energy - released - relaxed).abs() < 1e-4 * work, "{law} {way}: {text}");
+        assert!(error.abs() < 1e-4 * work, "{law} {way}: {text}");
         // Torn: what is left is far below what was put in.
         assert!(energy < 0.2 * work, "{law} {way}: {text}");
     }
 }
 
-/// Loads that nothing moves: under its own weight a column presses its foot with m g, and the work of gravity is twice its
-/// energy (Clapeyron) where load steps make the weight grow from 0.
+/// A weight that grows from 0 works the energy of the body (Clapeyron), as exactly as equilibria are found.
 #[test]
-fn weight_that_grows_works_twice_the_energy() {
+fn a_weight_that_grows_works_the_energy() {
     let steps =
         "unfix pull\nvariable g equal 1.0e4*time/4\nfix weight all gravity v_g vector 1 0 0\nstatics 4";
     let text = run(&deck(PMB, "1.0", steps));
@@ -173,7 +172,7 @@ fn what_cannot_be_balanced_is_refused() {
         ("fix heat all langevin 1 1 1 1\nstatics 1", "fix langevin cannot act in the load steps"),
         ("statics 0", "the number of load steps"),
         ("statics 1 break none", "break"),
-        ("statics 1 break batch 2", "the share"),
+        ("statics 1 break batch 2", "the fraction must lie between 0 and 1"),
         ("statics 1 tol 0", "the tolerance"),
     ] {
         let (text, well) = run_with(&deck(PMB, "1.0", steps), &[]);

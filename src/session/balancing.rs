@@ -146,9 +146,12 @@ impl Session {
         self.world.slots.invalidate();
         let (held, led) = self.held();
         (self.world.clock.running, self.world.clock.named_dt) = (true, Some(self.world.clock.dt));
-        let log = self.options.log.clone();
-        log.line(HEAD)?;
-        let mut note = |made: &Numbers| log.line(&row(made));
+        // Behind the step table, which programs read.
+        let mut table = HEAD.to_string();
+        let mut note = |made: &Numbers| {
+            table.push('\n');
+            table += &row(made);
+        };
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         let body = move |w: &World| body(w, held, led, span);
         let outcome = statics::statics(&mut plan, w, watch, (body, springs), goal, &mut note);
@@ -161,7 +164,7 @@ impl Session {
         finished?;
         self.interrupted |= outcome.interrupted;
         self.print_notes()?;
-        self.log_end(&plan, &outcome, Some(&block(&all)), self.timer.tables())?;
+        self.log_end(&plan, &outcome, Some(&format!("{table}\n{}", block(&all))), self.timer.tables())?;
         if self.options.mode == Mode::Measure {
             self.options.log.line(explain::text(&plan, true).trim_end())?;
         }
@@ -275,17 +278,18 @@ fn row(made: &Numbers) -> String {
 
 /// The results of all load steps.
 fn block(all: &Numbers) -> String {
-    let Ledger { work, energy, released, relaxed } = all.ledger;
+    let Ledger { work, energy, released, relaxed, error } = all.ledger;
     let short = |x: f64| general(x, 8);
     format!(
         "Statics:\n  Newton's steps, products with the stiffness = {} {}\n  Bonds broken = {}\n  \
-         Work = change of energy + released by bonds + relaxed = {} = {} + {} + {}",
+         Work = change of energy + released by bonds + relaxed + error = {} = {} + {} + {} + {}",
         all.newton,
         all.products,
         all.broken,
         short(work),
         short(energy),
         short(released),
-        short(relaxed)
+        short(relaxed),
+        general(error, 2)
     )
 }

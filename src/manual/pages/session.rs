@@ -65,21 +65,21 @@ pub(super) const STATICS: Entry = (
             hold; particles that no fix moves are held. Nothing has a velocity: `viscous` and the like do nothing.\n\n\
             Newton's method finds that place, its linear systems are solved by conjugate gradients with clusters of particles \
             that move as rigid bodies; products with the tangent stiffness are differences of forces. Nothing breaks while places \
-            are tried. A line of the log has, for each load step, Newton's steps, products, the unbalanced force over reactions \
+            are tried. A table at the end has, for each load step, Newton's steps, products, the unbalanced force over reactions \
             and loads, bonds that broke, work and released energy.\n\n\
             Bonds break at equilibria alone. `break one` breaks the bond stretched most over its critical stretch, with those \
             that are stretched as much, balances the body again at the same loads, and so on until none is stretched beyond its \
             limit. `batch F` breaks the share `F` of the others too, `all` breaks all: faster, and where a crack runs on under \
             fixed loads its path depends on it. Load steps are the resolution in which onset is found.\n\n\
             At the end the log states the work of paths and loads, and where it is: in the energy of the body, released by \
-            bonds where they broke, and relaxed: given up on the way to the next equilibrium, which motion would have carried \
-            away. Energies are true ones, also where `pe` sums densities. Thermo output, dumps, averages and `print` come \
+            bonds where they broke, and relaxed: given up on the way from a break to the next equilibrium, which motion would have carried \
+            away. The rest is the error of the load steps, in which forces count with their mean. Energies are true ones, also where `pe` sums densities. Thermo output, dumps, averages and `print` come \
             as in a run of `N` steps. A run behind it begins with velocities of 0.\n\n\
             It serves solids whose forces follow from places: `peri/pmb`, `peri/lps` and other laws without memory. Bonds of a \
             `bond_style`, contacts of grains with friction, rigid bodies and fixes that insert, delete or heat are refused by \
             name, and so are bodies of which nothing holds a piece along some axis.",
         example: "fix motion plate nve\nfix base foot setforce 0.0 0.0 0.0\nregion far block INF INF 0.003 INF INF INF units box\n\
-            group far region far\nfix pull far move linear 0.0 1.0e-3 0.0\nstatics 2 time 1.0e-6",
+            group far region far\nfix pull far move linear 0.0 1.0e-3 0.0 units box\nstatics 2 time 1.0e-6",
     },
 );
 

@@ -87,6 +87,7 @@ syntax match perigrainCommand /\v^\s*\zsrun_style\S@!/
 syntax match perigrainCommand /\v^\s*\zsset\S@!/
 syntax match perigrainCommand /\v^\s*\zsshell\S@!/
 syntax match perigrainCommand /\v^\s*\zsspecial_bonds\S@!/
+syntax match perigrainCommand /\v^\s*\zsstatics\S@!/
 syntax match perigrainCommand /\v^\s*\zssuffix\S@!/
 syntax match perigrainCommand /\v^\s*\zssweep\S@!/
 syntax match perigrainCommand /\v^\s*\zsthermo\S@!/

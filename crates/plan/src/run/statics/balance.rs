@@ -175,9 +175,9 @@ impl<'a> Balance<'a> {
         d.help("more load steps, fewer loads at a time, or a `run` where the body gives way").into()
     }
 
-    /// Looks at an equilibrium: what is remembered is remembered, what breaks breaks. The number of bonds that broke; where none
-    /// did, output follows.
-    pub fn settle(&mut self) -> Result<usize> {
+    /// Looks at an equilibrium, behind a break or not: what is remembered is remembered, what breaks breaks. The number of bonds
+    /// that broke; where none did, output follows.
+    pub fn settle(&mut self, torn: bool) -> Result<usize> {
         let mut t = tick(self.w, false);
         self.plan.request_sums(&mut t);
         (t.energy, t.atom_energy) = (true, true);
@@ -194,7 +194,7 @@ impl<'a> Balance<'a> {
             families.breaking_share = None;
         }
         self.plan.run(self.w, &t, &[Stage::EndOfStep])?;
-        self.ledger.balanced(self.w, &self.body);
+        self.ledger.balanced(self.w, &self.body, torn);
         let of_families = self.w.families.as_ref().map_or(0, |families| families.broken().len());
         let broken = of_families + bonds.saturating_sub(self.w.bonds.list.len());
         if broken > 0 {

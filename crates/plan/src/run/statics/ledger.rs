@@ -13,8 +13,10 @@ pub struct Ledger {
     pub energy: f64,
     /// Energy of bonds where they broke.
     pub released: f64,
-    /// Energy given up on the way to the next equilibrium, which motion would have carried away.
+    /// Energy given up on the way from a break to the next equilibrium, which motion would have carried away.
     pub relaxed: f64,
+    /// What work is beyond all these: the error of the mean of forces in load steps, and of equilibria.
+    pub error: f64,
 }
 
 /// What it is booked from.
@@ -75,8 +77,8 @@ impl Books {
         reaction.sqrt().max(load.sqrt())
     }
 
-    /// An equilibrium: what has been worked since the last one, by the mean of forces there and here.
-    pub fn balanced(&mut self, w: &World, body: &Body) {
+    /// An equilibrium: what has been worked since the last one, by the mean of forces there and here. `torn`: bonds broke there.
+    pub fn balanced(&mut self, w: &World, body: &Body, torn: bool) {
         let energy = energy(w, body);
         self.load(w, body);
         let (x, from) = (&w.particles.x, &self.places);
@@ -93,8 +95,8 @@ impl Books {
         });
         self.numbers.work += work;
         self.numbers.energy = energy - self.first;
-        // Without a break this is what is not conserved: friction, flow, and the error of the mean of forces.
-        self.numbers.relaxed += self.last + work - energy;
+        let given_up = self.last + work - energy;
+        *if torn { &mut self.numbers.relaxed } else { &mut self.numbers.error } += given_up;
         self.last = energy;
         self.keep(w);
     }

@@ -80,7 +80,7 @@ pub struct Numbers {
 }
 
 /// Takes note of a load step.
-pub type Note<'a> = &'a mut dyn FnMut(&Numbers) -> Result<()>;
+pub type Note<'a> = &'a mut dyn FnMut(&Numbers);
 
 /// Makes load steps until `goal.steps` are made; output appears as in a run. `body` finds what may move, once
 /// forces have been computed, and `springs` the bonds that still live; `note` gets the numbers of each load step.
@@ -110,7 +110,7 @@ pub fn statics(
         let start = Instant::now();
         let mut made = par::inside(|| balance.load_step())?;
         made.seconds = start.elapsed().as_secs_f64();
-        note(&made)?;
+        note(&made);
         if made.broken > 0 {
             balance.renew(springs(balance.w));
         }
@@ -166,7 +166,7 @@ impl Balance<'_> {
         self.lead()?;
         self.follow(&mut made)?;
         for round in 0.. {
-            let broken = self.settle()?;
+            let broken = self.settle(round > 0)?;
             if broken == 0 {
                 break;
             }
