@@ -27,6 +27,7 @@ impl Clone for Box<dyn Fact> {
 
 impl Facts {
     /// The value, if there is one.
+    #[inline]
     pub fn get<T: Any>(&self, key: Key<T>) -> Option<&T> {
         let fact: &dyn Any = &**self.0.get(key.of())?;
         fact.downcast_ref()
@@ -45,6 +46,7 @@ impl Facts {
     }
 
     /// Whether there is a value.
+    #[inline]
     pub fn has<T: Any>(&self, key: Key<T>) -> bool {
         self.get(key).is_some()
     }

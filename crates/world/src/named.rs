@@ -131,6 +131,7 @@ impl<T> Constant<T> {
 
 impl<T> std::ops::Deref for Constant<T> {
     type Target = Key<T>;
+    #[inline]
     fn deref(&self) -> &Key<T> {
         self.key.get_or_init(|| {
             let key = Key::known(self.text);
@@ -184,6 +185,7 @@ impl<T> Default for Named<T> {
 }
 
 impl<T> Named<T> {
+    #[inline]
     fn place(&self, key: Key<T>) -> Option<usize> {
         (*self.places.get(key.name.number)? as usize).checked_sub(1)
     }
@@ -224,6 +226,7 @@ impl<T> Named<T> {
     }
 
     /// The value, if there is one.
+    #[inline]
     pub fn get(&self, key: Key<T>) -> Option<&T> {
         let (_, value, mark) = &self.entries[self.place(key)?];
         mark.read();

@@ -3,13 +3,13 @@
 use super::lines::keywords;
 use super::numbers::read;
 use super::softening::last_stretch;
-use super::{Coeff, short_range};
+use super::{Coeff, short_range, unloading};
 use crate::TypePairs;
 use perigrain_base::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
 use perigrain_lang::Args;
 use perigrain_peri::families::{Moduli, PmbCoeff};
+use perigrain_peri::law::Style;
 use perigrain_peri::law::style::Curve;
-use perigrain_peri::law::{LawKind, Style};
 use perigrain_peri::moduli::{self, BOND_NU, Elastic, Form, Mix};
 use perigrain_styles::words::{Keyword, Kind, Part, Value, Words, alternatives, inner, one_in};
 use perigrain_styles::{BuildCx, UseKind};
@@ -272,7 +272,7 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     let known: Vec<&'static str> = keywords.iter().map(|keyword| keyword.word).collect();
     let needed = keywords.iter().filter(|keyword| keyword.needed() && keyword.word != HORIZON.word);
     let mut missing: Vec<&str> = needed.map(|keyword| keyword.word).collect();
-    while let Some(word) = args.peek().filter(|w| LawKind::unloading_as(&w.text).is_none()) {
+    while let Some(word) = args.peek().filter(|w| unloading(&w.text).is_none()) {
         let key = args.choice("keyword of a material", &known)?;
         missing.retain(|k| *k != key);
         match key {

@@ -88,6 +88,11 @@ enum Calibrate {
 /// Up to so many particles the exact limit of a step is looked for where the estimate is exceeded: it takes as long as some 60 steps.
 const MOST_LOOKED_AT: usize = 2_000_000;
 
+/// The law of bonds that a word of the line chooses by how they unload.
+fn unloading(word: &str) -> Option<LawKind> {
+    LawKind::unloading_as(word)
+}
+
 /// Starts a style: particles must have volumes.
 fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
     if !cx.world.particles.style.peri {
@@ -185,7 +190,7 @@ impl Solid {
             return Ok(());
         }
         let at = args.here();
-        let (word, first) = (LawKind::unloading_as(args.peek_text()), LawKind::unloading_as("plastic"));
+        let (word, first) = (unloading(args.peek_text()), unloading("plastic"));
         let Some(chosen) = word.or(first.filter(|_| self.unloading.is_none())) else { return Ok(()) };
         if self.unloading.is_some_and(|known| known != chosen) {
             let text = "another pair has the other rule of unloading: one rule holds for all";

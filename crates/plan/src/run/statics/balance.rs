@@ -23,8 +23,8 @@ const STEPS: usize = 40;
 const PRODUCTS: usize = 2000;
 /// How often a step is halved where its end is farther from balance than its beginning.
 const HALVINGS: usize = 30;
-/// Where so little is left over reactions and loads and two steps in a row do not halve it, rounding is what is left: stretches
-/// of 1e-14 count as none, beside those of 1e-7 and more that loads make.
+/// Where so little is left over reactions and loads and two steps in a row do not halve it, it is rounding: a stretch
+/// below 4e-13 carries no force, beside those of 1e-7 and more that loads make.
 const ROUNDING: f64 = 1e-6;
 /// How far a step moves a particle at most, in distances of neighbours.
 const FARTHEST: f64 = 0.5;
