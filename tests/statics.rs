@@ -161,6 +161,12 @@ fn threads_and_ranks_leave_the_same_bits() {
         let other = clean(run_with(&deck, words).0);
         assert!(other == one, "{words:?}\n{other}\n{one}");
     }
+    // Their logs say on how many ranks they ran.
+    let particles = |text: &str| {
+        text[text.find("ITEM: ATOMS").unwrap()..].lines().take(325).map(String::from).collect::<Vec<_>>()
+    };
+    let several = run_with(&deck, &["-ranks", "3", "-threads", "1"]).0;
+    assert!(particles(&several) == particles(&one), "{several}");
 }
 
 /// What load steps cannot be made with is refused by name.
