@@ -316,7 +316,7 @@ impl Families {
         Begun { advance, shares, changes, searches }
     }
 
-    /// The second half. Where it [`Begun::searches`] for pairs the places of all particles have to be known.
+    /// The second half. Where it searches for pairs the places of all particles have to be known.
     pub fn finish(
         &mut self,
         view: &PeriView,

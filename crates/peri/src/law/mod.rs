@@ -1,6 +1,6 @@
 //! Laws of bonds: one file for each, and what all of them share.
 //!
-//! A law is a type with [`BondLaw`](formula::BondLaw), a formula that is written once for single bonds and for lanes of them, and a [`Style`]: what
+//! A law is a type with [`BondLaw`], a formula that is written once for single bonds and for lanes of them, and a [`Style`]: what
 //! it is like, the numbers that decks give it, its kernels. Scenes choose it by the [table].
 
 mod eps;

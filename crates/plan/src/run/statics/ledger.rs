@@ -4,7 +4,7 @@ use super::Body;
 use perigrain_base::par;
 use perigrain_world::World;
 
-/// Energies since the first load step [energy].
+/// Energies since the first load step, in the unit of energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Work of what stands on paths, and of loads on free particles.
