@@ -158,10 +158,12 @@ impl Session {
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         *self.world.changed &= outcome.is_err();
         self.ran = false;
+        let early = outcome.as_ref().is_ok_and(|(o, _)| o.interrupted);
+        let saved = if early { self.save_early(&mut plan) } else { Ok(()) };
         let finished = plan.finish(&mut self.world);
         self.notes.append(std::mem::take(&mut self.world.notes));
         let (outcome, all) = outcome.map_err(|e| e.at(span))?;
-        finished?;
+        saved.and(finished)?;
         self.interrupted |= outcome.interrupted;
         self.print_notes()?;
         self.log_end(&plan, &outcome, Some(&format!("{table}\n{}", block(&all))), self.timer.tables())?;

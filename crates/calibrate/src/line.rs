@@ -1,7 +1,7 @@
 //! The words of a `calibrate` line as they stand in it.
 
 use super::kinds::{Map, Method, Quantity, Shape, Solver, Target};
-use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, fail};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_statics::ends::Hold;
 use perigrain_statics::strength::Avalanche;
@@ -401,28 +401,24 @@ fn strain(a: &mut Args, _: &BuildCx) -> Result<f64> {
 }
 
 fn tolerance(a: &mut Args, _: &BuildCx) -> Result<f64> {
-    let span = a.here();
-    let tol = a.positive("the tolerance")?;
-    if tol >= 1.0 {
-        return fail(Code::BAD_VALUE, span, "the tolerance is a part of the stiffness: it must be below 1");
-    }
-    Ok(tol)
+    let at = a.here();
+    let tolerance = a.positive("the tolerance")?;
+    below_one(tolerance, at, "the tolerance is a part of the stiffness: it must be below 1")
 }
 
 fn until(a: &mut Args, _: &BuildCx) -> Result<f64> {
-    let span = a.here();
+    let at = a.here();
     let until = a.non_negative("the part of the largest force")?;
-    if until >= 1.0 {
-        return fail(Code::BAD_VALUE, span, "the part of the largest force is to be below 1");
-    }
-    Ok(until)
+    below_one(until, at, "the part of the largest force is to be below 1")
 }
 
 fn together(a: &mut Args, _: &BuildCx) -> Result<f64> {
-    let span = a.here();
+    let at = a.here();
     let together = a.non_negative("the part of the load")?;
-    if together >= 1.0 {
-        return fail(Code::BAD_VALUE, span, "the part of the load is to be below 1");
-    }
-    Ok(together)
+    below_one(together, at, "the part of the load is to be below 1")
+}
+
+/// A part of something, refused by this text where it is all of it or more.
+fn below_one(part: f64, at: Span, text: &str) -> Result<f64> {
+    if part < 1.0 { Ok(part) } else { fail(Code::BAD_VALUE, at, text) }
 }

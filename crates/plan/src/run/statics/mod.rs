@@ -103,6 +103,8 @@ pub fn statics(
     let mut all = Numbers { time: balance.w.clock.time(), ..Numbers::default() };
     let mut interrupted = false;
     while balance.w.clock.step < balance.w.clock.last && balance.w.clock.halt == Halt::No {
+        // All ranks end behind the same load step.
+        balance.w.settings.agree_at(balance.w.clock.step);
         if balance.w.settings.stops() || balance.w.settings.ends_at(balance.w.clock.step) {
             interrupted = true;
             break;
