@@ -12,8 +12,9 @@ use perigrain_fixes::AtRest;
 use perigrain_lang::Command;
 use perigrain_peri::families::ForceUnit;
 use perigrain_plan::explain;
-use perigrain_plan::run::statics::{self, Body, Breaking, Goal, Ledger, Numbers};
+use perigrain_plan::run::statics::{self, Body, Breaking, Control, Goal, Ledger, Numbers, Scene, Solver};
 use perigrain_statics::network::Network;
+use perigrain_styles::peri_view::view;
 use perigrain_styles::words::{Fraction, Words};
 use perigrain_world::{Halt, World};
 use std::time::Instant;
@@ -36,6 +37,39 @@ pub struct Statics {
     /// How often the body is balanced in one load step at most, each time with other bonds.
     #[word(keyword, name = "M", what = "the most equilibria of a load step", from = 1, default = 10_000)]
     most: i64,
+    /// How the load of a load step is found.
+    #[word(keyword, default = Controls::Load)]
+    control: Controls,
+    /// Load steps end where the load (the larger one of the two-norms of reactions and loads) has fallen to this share of its peak.
+    #[word(keyword, name = "P", what = "the share of the peak load")]
+    until: Option<Fraction>,
+    /// Whether a load step in which no balance is found is cut into parts, down to 1/1024.
+    #[word(keyword, default = true)]
+    adapt: bool,
+    /// How equilibria are found.
+    #[word(keyword, default = Solvers::Newton)]
+    solver: Solvers,
+}
+
+/// How the load is found.
+#[derive(Words)]
+#[word(what = "control of the load")]
+enum Controls {
+    /// Time moves by T/N in each load step.
+    Load,
+    /// Time moves, forwards or back, to where the bond stretched most over its limit is at it, and that bond breaks: one load step
+    /// for each break, so that loads that fall while a crack grows are followed (snap-back). Paths and loads should be linear in time.
+    Damage,
+}
+
+/// How equilibria are found.
+#[derive(Words)]
+#[word(what = "solver of equilibria")]
+enum Solvers {
+    /// Newton's method, its linear systems by conjugate gradients.
+    Newton,
+    /// Adaptive dynamic relaxation: damped motion, slower, for bodies that give way at once and pieces that nothing holds.
+    Adr,
 }
 
 /// What breaks at an equilibrium.
@@ -65,7 +99,29 @@ impl Session {
             Break::All => Breaking::All,
             Break::No => Breaking::No,
         };
-        let goal = Goal { steps: line.steps, tol: line.tol, breaking, most: line.most as usize };
+        let control = match line.control {
+            Controls::Load => Control::Load,
+            Controls::Damage => Control::Damage,
+        };
+        if control == Control::Damage && breaking != Breaking::One {
+            let text = "`control damage` breaks one bond after another";
+            let d = Diagnostic::error(Code::BAD_VALUE, cmd.span, text);
+            return Err(d.help("remove `break`, or write `break one`").into());
+        }
+        let solver = match line.solver {
+            Solvers::Newton => Solver::Newton,
+            Solvers::Adr => Solver::Adr,
+        };
+        let goal = Goal {
+            steps: line.steps,
+            tol: line.tol,
+            breaking,
+            most: line.most as usize,
+            control,
+            until: line.until.map(|share| share.0),
+            adapt: line.adapt,
+            solver,
+        };
         self.steps_left(goal.steps, 1, cmd.span)?;
         self.made = self.made.saturating_add(goal.steps);
         self.thermo_computes();
@@ -153,8 +209,10 @@ impl Session {
             table += &row(made);
         };
         let (w, watch) = (&mut self.world, self.watch.as_mut());
-        let body = move |w: &World| body(w, held, led, span);
-        let outcome = statics::statics(&mut plan, w, watch, (body, springs), goal, &mut note);
+        let pieces_stand = goal.solver == Solver::Newton;
+        let body = move |w: &World| body(w, (held, led), pieces_stand, span);
+        let scene = Scene { springs, ratio };
+        let outcome = statics::statics(&mut plan, w, watch, (body, scene), goal, &mut note);
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
         *self.world.changed &= outcome.is_err();
         self.ran = false;
@@ -203,8 +261,8 @@ impl Session {
 /// The body of a scene, of which the components `held` do not move freely and `led` stand on a path.
 ///
 /// # Errors
-/// Nothing that moves; pieces that nothing holds.
-fn body(w: &World, held: Vec<u8>, led: Vec<u8>, span: Span) -> Result<Body> {
+/// Nothing that moves; pieces that nothing holds, unless they need not stand.
+fn body(w: &World, (held, led): (Vec<u8>, Vec<u8>), pieces_stand: bool, span: Span) -> Result<Body> {
     if held.iter().all(|held| held & 0b111 == 0b111) {
         let text = "no particle moves freely in these load steps";
         let d = Diagnostic::error(Code::INCOMPLETE, span, text);
@@ -212,7 +270,7 @@ fn body(w: &World, held: Vec<u8>, led: Vec<u8>, span: Span) -> Result<Body> {
     }
     let (network, weight) = (springs(w), weights(w));
     let pieces = network.pieces();
-    for d in 0..3 {
+    for d in (0..3).filter(|_| pieces_stand) {
         let mut stands = vec![false; w.n() + 1];
         for (i, piece) in pieces.iter().enumerate() {
             stands[(*piece as usize).min(w.n())] |= held[i] >> d & 1 == 1;
@@ -226,7 +284,7 @@ fn body(w: &World, held: Vec<u8>, led: Vec<u8>, span: Span) -> Result<Body> {
             );
             let d = Diagnostic::error(Code::INCOMPLETE, span, text);
             return Err(d
-                .help("hold some of its particles, as by `fix ID GROUP setforce 0 NULL NULL` or `fix move`")
+                .help("hold some of its particles, as by `fix ID GROUP setforce 0 NULL NULL` or `fix move`, or write `solver adr`")
                 .into());
         }
     }
@@ -243,6 +301,12 @@ fn weights(w: &World) -> Vec<f64> {
     let densities = w.families.as_ref().is_some_and(|f| f.options.unit == ForceUnit::Density);
     let volume = |i: usize| w.particles.volume.get(i).copied().filter(|v| densities && *v > 0.0);
     (0..w.n()).map(|i| volume(i).unwrap_or(1.0)).collect()
+}
+
+/// The largest load ratio of bonds.
+fn ratio(w: &World) -> f64 {
+    let Some(families) = w.families.as_ref() else { return 0.0 };
+    view(w).map_or(0.0, |view| families.load_ratio(&view))
 }
 
 /// The living bonds of families with their stiffnesses as bonds by themselves.
@@ -280,11 +344,13 @@ fn row(made: &Numbers) -> String {
 
 /// The results of all load steps.
 fn block(all: &Numbers) -> String {
-    let Ledger { work, energy, released, relaxed, error } = all.ledger;
+    let Ledger { work, energy, released, relaxed, lost, error } = all.ledger;
+    // Laws without memory lose nothing, and a body that flows has no error apart from that.
+    let (rest, number) = if lost == 0.0 { ("error", error) } else { ("lost", lost) };
     let short = |x: f64| general(x, 8);
     format!(
         "Statics:\n  Newton's steps, products with the stiffness = {} {}\n  Bonds broken = {}\n  \
-         Work = change of energy + released by bonds + relaxed + error = {} = {} + {} + {} + {}",
+         Work = change of energy + released by bonds + relaxed + {rest} = {} = {} + {} + {} + {}",
         all.newton,
         all.products,
         all.broken,
@@ -292,6 +358,6 @@ fn block(all: &Numbers) -> String {
         short(energy),
         short(released),
         short(relaxed),
-        general(error, 2)
+        general(number, if lost == 0.0 { 2 } else { 8 })
     )
 }

@@ -49,6 +49,7 @@ pub mod reduce;
 mod rigid_energy;
 mod rigid_local;
 mod slice;
+mod statics;
 mod stress_atom;
 pub mod swing;
 mod temp;
@@ -131,6 +132,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &rigid_energy::KeRigid,
     &rigid_local::RigidLocal,
     &slice::Slice,
+    &statics::Statics,
     &stress_atom::StressAtom,
     &temp::Temp,
     &temp_deform::TempDeform,

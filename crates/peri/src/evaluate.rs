@@ -135,6 +135,7 @@ impl Families {
             relaxing: None,
             counts_losses: false,
             breaking_share: None,
+            implicit: false,
             four_lanes: false,
             almost: vec![],
             weighed: None,
@@ -367,9 +368,10 @@ impl Families {
         (cell, shares): (&Cell, Option<&mut Shares>),
     ) {
         let form = self.form();
-        let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let Self { list, options, law, table, breaking_enabled, counts_losses, implicit, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
-        let settling = law.settling(table, options, (advance, tallied, *counts_losses));
+        let settling =
+            law.settling(table, options, (advance || *implicit, advance), (tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.
             list::measure(list, law, cell);

@@ -21,6 +21,7 @@ pub mod law;
 mod limit;
 pub mod linked;
 mod list;
+mod load_ratio;
 mod measured;
 pub mod moduli;
 mod pass;

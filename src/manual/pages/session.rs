@@ -65,19 +65,27 @@ pub(super) const STATICS: Entry = (
             hold; particles that no fix moves are held. Nothing has a velocity: `viscous` and the like do nothing.\n\n\
             Newton's method finds that place, its linear systems are solved by conjugate gradients with clusters of particles \
             that move as rigid bodies; products with the tangent stiffness are differences of forces. Nothing breaks while places \
-            are tried. A table at the end has, for each load step, Newton's steps, products, the unbalanced force over reactions \
-            and loads, bonds that broke, work and released energy.\n\n\
-            Bonds break at equilibria alone. `break one` breaks the bond stretched most over its critical stretch, with those \
-            that are stretched as much, balances the body again at the same loads, and so on until none is stretched beyond its \
-            limit. `batch F` breaks the share `F` of the others too, `all` breaks all: faster, and where a crack runs on under \
-            fixed loads its path depends on it. Load steps are the resolution in which onset is found.\n\n\
-            At the end the log states the work of paths and loads, and where it is: in the energy of the body, released by \
+            are tried, and bonds that flow, soften or relax do so for the whole load step at each of them, and keep what the equilibrium \
+            leaves (`peri/eps`, `peri/ves`, `plastic`, `softening`). A load step that is not balanced is cut in half, and so on \
+            (`adapt`); where the body gives way at once, it is relaxed by damped motion, which `solver adr` does from the beginning.\n\n\
+            Bonds break at equilibria alone. `break one` finds the load of each load step at which the first bond is at its limit (to \
+            1e-3 of it), breaks that one with those that are stretched as much, balances the body again at the same load, and so on until \
+            none is beyond its limit. `batch F` breaks the share `F` of the others too, `all` breaks all, at the end of load steps: \
+            faster, and where a crack runs on under fixed loads its path depends on it.\n\n\
+            Under `control damage` a load step is a break: time moves to where the bond with the largest load ratio is at its limit, \
+            forwards or back, and that bond breaks. So the load falls where the body would otherwise fly apart at a fixed load \
+            (snap-back), and no energy is given up but the little that one bond leaves. `N` is the most breaks, `T`/`N` the first guess \
+            of a time; paths and loads should be linear in time. `until 0.2` ends where the load has fallen to 0.2 of its peak.\n\n\
+            A table at the end has, for each load step, Newton's steps, products, the unbalanced force over reactions \
+            and loads, bonds that broke, work and released energy; `compute statics` offers these numbers in rows and variables. \
+            Then the log states the work of paths and loads, and where it is: in the energy of the body, released by \
             bonds where they broke, and relaxed: given up on the way from a break to the next equilibrium, which motion would have carried \
-            away. The rest is the error of the load steps, in which forces count with their mean. Energies are true ones, also where `pe` sums densities. Thermo output, dumps, averages and `print` come \
-            as in a run of `N` steps. A run behind it begins with velocities of 0.\n\n\
-            It serves solids whose forces follow from places: `peri/pmb`, `peri/lps` and other laws without memory. Bonds of a \
-            `bond_style`, contacts of grains with friction, rigid bodies and fixes that insert, delete or heat are refused by \
-            name, and so are bodies of which nothing holds a piece along some axis.",
+            away. The rest is the error of the load steps, in which forces count with their mean, or what bonds have lost that flow, \
+            soften or relax. Energies are true ones, also where `pe` sums densities.\n\n\
+            Thermo output, dumps, averages and `print` come as in a run of `N` steps. A run behind it begins with velocities of 0. The force \
+            on what `fix move` leads is the sum of `fx` over its group (`compute reduce`). Bonds of a \
+            `bond_style`, contacts of grains with friction, rigid bodies and fixes that insert or delete are refused by \
+            name, and so are bodies of which nothing holds a piece along some axis, but for `solver adr`.",
         example: "fix motion plate nve\nfix base foot setforce 0.0 0.0 0.0\nregion far block INF INF 0.003 INF INF INF units box\n\
             group far region far\nfix pull far move linear 0.0 1.0e-3 0.0 units box\nstatics 2 time 1.0e-6",
     },

@@ -84,6 +84,7 @@ impl Op for Force {
         }
         let Some(mut families) = w.families.take() else { return Ok(()) };
         families.law.dt = t.dt;
+        families.implicit &= !t.setup;
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
         if t.atom_energy {

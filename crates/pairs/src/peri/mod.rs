@@ -266,7 +266,7 @@ impl Pair for Solid {
             true_forces: Some(self.unit() == ForceUnit::Newton),
             elastic_grains: false,
             mixes: false,
-            balances: self.law.kind.memory() == 0,
+            balances: true,
             solids: types().filter(|&i| self.covers(i, i)).collect(),
             unbreakable: types().find(endless).filter(|_| !self.materials.is_empty()),
             coefficients: match self.law.kind {

@@ -112,12 +112,14 @@ impl Law {
         }
     }
 
-    /// What turns sums into columns in an evaluation that advances or not, is tallied or not, with losses counted or not.
+    /// What turns sums into columns in an evaluation in which bonds flow and relax (`acts`) and keep that (`keep`) or not, which is tallied or
+    /// not, with losses counted or not.
     pub(crate) fn settling(
         &self,
         table: &PmbTable,
         options: &FamilyOptions,
-        (advance, tallied, counts): (bool, bool, bool),
+        (acts, keep): (bool, bool),
+        (tallied, counts): (bool, bool),
     ) -> Settling {
         let types = 1..=if self.kind.has_states() { table.types() as u16 } else { 0 };
         let of = |kind: u16| {
@@ -130,17 +132,18 @@ impl Law {
                 limit: 2.0 * 25.0 * m.yield_stress * m.yield_stress / (8.0 * std::f64::consts::PI * fifth),
                 horizon: horizon.unwrap_or(0.0),
                 lambda: m.lambda,
-                left: left(m.tau, self.dt, advance),
+                left: left(m.tau, self.dt, acts),
             }
         };
         Settling {
             stiffness: types.map(of).collect(),
             surface: self.surface,
-            moment: Moment { mended: options.mended, ..self.moment(advance) },
+            moment: Moment { mended: options.mended, ..self.moment(acts) },
             compat: options.compat_lammps,
-            advance,
+            advance: acts,
+            keep,
             tallied,
-            counted: counts && advance,
+            counted: counts && keep,
         }
     }
 

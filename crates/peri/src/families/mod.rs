@@ -105,6 +105,9 @@ pub struct Families {
     /// as much and this share of the others; `None`: all.
     #[serde(skip)]
     pub breaking_share: Option<f64>,
+    /// Evaluations that do not advance let bonds flow, soften and relax as a step would, and forget it.
+    #[serde(skip)]
+    pub implicit: bool,
     /// Take kernels of four lanes even where the processor has eight: to compare them.
     #[serde(skip)]
     pub four_lanes: bool,

@@ -48,9 +48,10 @@ impl Families {
         shares: Option<&mut Shares>,
     ) {
         let form = self.form();
-        let Self { lattices, options, law, table, breaking_enabled, counts_losses, .. } = self;
+        let Self { lattices, options, law, table, breaking_enabled, counts_losses, implicit, .. } = self;
         let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
-        let settling = law.settling(table, options, (advance, tallied, *counts_losses));
+        let settling =
+            law.settling(table, options, (advance || *implicit, advance), (tallied, *counts_losses));
         let f = Shared::new(f);
         let mut shares = shares.into_iter().flat_map(|shares| &mut shares.bodies);
         for body in lattices {
@@ -95,7 +96,7 @@ pub fn keep_earlier(state: &mut SiteState, law: &Style, settling: &Settling) {
 
 /// Notes the form in which viscous bonds remember from now on.
 pub fn hold(state: &mut SiteState, law: &Style, settling: &Settling) {
-    if settling.advance && law.losses == Losses::Relaxation {
+    if settling.keep && law.losses == Losses::Relaxation {
         state.held = settling.moment.hold;
     }
 }

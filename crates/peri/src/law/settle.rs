@@ -17,8 +17,10 @@ pub struct Settling {
     pub moment: Moment,
     /// LAMMPS' forces where they differ.
     pub compat: bool,
-    /// Keep what sites remember.
+    /// What sites remember moves on.
     pub advance: bool,
+    /// And is kept.
+    pub keep: bool,
     /// Energies are wanted of this evaluation.
     pub tallied: bool,
     /// The heat of flowing is counted.
@@ -151,6 +153,9 @@ fn each<W: BondLaw, const FLOW: bool>(
                 };
                 put(&mut columns, k, &settle(&mut site), W::COLUMNS);
                 theta[k] = site.theta;
+                if !settling.keep {
+                    continue;
+                }
                 if let Some((before, left)) = &mut relaxing {
                     (before[k], left[k]) = (site.unrelaxed.before, site.unrelaxed.left);
                 }

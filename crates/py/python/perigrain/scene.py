@@ -78,6 +78,12 @@ class Scene:
         self.lammps.command(f"run {_whole(steps)}")
         return self
 
+    def statics(self, steps: int, **words: object) -> "Scene":
+        """Makes load steps; words are those of the command, as in `scene.statics(10, time=1.0, control="damage")`."""
+        rest = " ".join(f"{name.rstrip('_')} {value}" for name, value in words.items())
+        self.lammps.command(f"statics {_whole(steps)} {rest}".rstrip())
+        return self
+
     def steps(self, steps: int, every: int = 1) -> Iterator[int]:
         """Runs steps, and yields the step number before the first, after every `every` steps, and after the last.
 

@@ -1,13 +1,13 @@
 //! From a place out of balance to one in balance: Newton's method over the ops of a plan.
 
 use super::ledger::Books;
-use super::{Body, Breaking, Goal, Numbers};
+use super::path::Start;
+use super::{Body, Breaking, Goal, Numbers, Scene, Solver};
 use crate::run::verlet::tick;
 use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_base::par;
 use perigrain_statics::coarse::Coarse;
-use perigrain_statics::network::Network;
 use perigrain_statics::pcg::{self, Preconditioner};
 use perigrain_statics::precond::Blocks;
 use perigrain_statics::six::Six;
@@ -30,6 +30,10 @@ const ROUNDING: f64 = 1e-6;
 const FARTHEST: f64 = 0.5;
 /// How exactly the first linear system of a load step is solved, over its load; later ones more so (Eisenstat and Walker).
 const FORCING: f64 = 0.1;
+/// The same of the way that the tangent predicts for a load step.
+const AHEAD: f64 = 1e-3;
+/// How exactly the linear system of a last step is solved, over the tolerance.
+const EXACT: f64 = 0.3;
 /// A step past the end of which the force along it points back by more than this part is too long.
 const BACK: f64 = 0.5;
 
@@ -40,67 +44,98 @@ pub(super) struct Balance<'a> {
     pub body: Body,
     pub goal: Goal,
     pub ledger: Books,
-    blocks: Blocks,
+    pub blocks: Blocks,
+    /// What is read from the scene.
+    pub scene: Scene,
+    /// The damping of relaxation, which lasts from one equilibrium to the next.
+    pub damping: f64,
     coarse: Option<Coarse>,
-    /// How far led particles move in this load step.
-    path: Vec<[f64; 3]>,
-    /// How the free ones moved in the last one: where the solution of the next one begins.
-    last: Vec<Six>,
+    /// How far led particles move from where they are.
+    pub path: Vec<[f64; 3]>,
+    /// How the free ones moved last: where the next solution begins, and for which part of a load step.
+    pub last: (Vec<Six>, f64),
+    /// The scene at the beginning of the load step.
+    pub start: Start,
+    /// The largest load ratio of bonds at the last equilibrium, and by how much it grows in one load step.
+    pub ratio: (f64, f64),
+    /// The part of the load step at the present place, and the one up to which bonds remember.
+    pub part: [f64; 2],
+    /// Bonds that broke since their springs were found.
+    pub stale: usize,
 }
 
 impl<'a> Balance<'a> {
     /// A body as it is.
-    pub fn new(plan: &'a mut StepPlan, w: &'a mut World, body: Body, goal: Goal) -> Self {
+    pub fn new(plan: &'a mut StepPlan, w: &'a mut World, body: Body, (scene, goal): (Scene, Goal)) -> Self {
         let blocks = Blocks::of_network(&body.network, &body.held);
-        let last = vec![[0.0; 6]; w.n()];
-        Self { plan, w, body, goal, ledger: Books::default(), blocks, coarse: None, path: vec![], last }
-    }
-
-    /// Takes note of the bonds that live now.
-    pub fn renew(&mut self, network: Network) {
-        self.blocks = Blocks::of_network(&network, &self.body.held);
-        (self.body.network, self.coarse) = (network, None);
-    }
-
-    /// Moves the clock, and finds how far what stands on paths moves; it is put back to where it was.
-    pub fn lead(&mut self) -> Result<()> {
-        self.w.clock.step += 1;
-        let t = tick(self.w, false);
-        let from = self.w.particles.x.clone();
-        self.plan.run(self.w, &t, &[Stage::InitialIntegrate, Stage::PostIntegrate])?;
-        self.w.particles.v.fill([0.0; 3]);
-        let (x, body) = (&mut self.w.particles.x, &self.body);
-        self.path = vec![[0.0; 3]; x.len()];
-        for i in 0..x.len() {
-            for d in (0..3).filter(|d| body.leads(i, *d)) {
-                self.path[i][d] = x[i][d] - from[i][d];
-            }
+        let (last, start) = ((vec![[0.0; 6]; w.n()], 1.0), Start::of(w));
+        let ledger = Books::default();
+        Self {
+            plan,
+            w,
+            body,
+            goal,
+            ledger,
+            blocks,
+            scene,
+            damping: 0.0,
+            coarse: None,
+            path: vec![],
+            last,
+            start,
+            ratio: (0.0, 0.0),
+            part: [0.0; 2],
+            stale: 0,
         }
-        x.copy_from_slice(&from);
-        Ok(())
     }
 
-    /// Follows what stands on paths, by the tangent, and balances.
-    pub fn follow(&mut self, made: &mut Numbers) -> Result<()> {
+    /// Takes note of the bonds that live now, where more than this have broken since it was done. Clusters stay: they serve until
+    /// solutions take long.
+    pub fn renew(&mut self, unless: usize) {
+        if self.stale > unless {
+            self.body.network = (self.scene.springs)(self.w);
+            self.blocks = Blocks::of_network(&self.body.network, &self.body.held);
+            self.stale = 0;
+        }
+    }
+
+    /// The time over which bonds flow and relax in an evaluation: what they have not yet seen of the load step.
+    fn time_left(&self) -> f64 {
+        (self.part[0] - self.part[1]) * self.start.dt()
+    }
+
+    /// Follows what stands on paths, by the tangent, and balances. `share`: which part of a load step the paths are. `false`: no
+    /// balance was found.
+    pub fn follow(&mut self, share: f64, made: &mut Numbers) -> Result<bool> {
+        if self.goal.solver == Solver::Adr {
+            self.step_along();
+            return self.relax(made);
+        }
         self.residual(true)?;
-        let (n, base) = (self.w.n(), self.w.particles.x.clone());
+        let (n, base, here) = (self.w.n(), self.w.particles.x.clone(), self.w.particles.f.clone());
         let mut load = self.unbalanced();
         let most = self.path.iter().flatten().fold(0.0, |m: f64, a| m.max(a.abs()));
         if most > 0.0 {
             // What the paths pull, by a small part of them: K of the free particles beside the led ones.
             let part = (SMALL * self.body.size / most).min(1.0);
-            let ahead = self.forces_at(&base, part)?;
-            let behind = self.forces_at(&base, -part)?;
+            for ((x, from), path) in self.w.particles.x.iter_mut().zip(&base).zip(&self.path) {
+                *x = std::array::from_fn(|d| from[d] + part * path[d]);
+            }
+            self.residual(false)?;
+            let ahead = self.unbalanced();
             for i in 0..n {
+                let before = load[i];
                 for d in 0..3 {
-                    load[i][d] += (ahead[i][d] - behind[i][d]) / (2.0 * part);
+                    load[i][d] += (ahead[i][d] - before[d]) / part;
                 }
                 load[i] = self.blocks.free(i, &load[i]);
             }
         }
-        let mut field = std::mem::take(&mut self.last);
+        let (mut field, of) = std::mem::take(&mut self.last);
         field.resize(n, [0.0; 6]);
-        self.solve(&base, &load, &mut field, FORCING, made)?;
+        let scale = if of == 0.0 { 0.0 } else { share / of };
+        field.iter_mut().flatten().for_each(|u| *u *= scale);
+        self.solve((&base, &here), &load, &mut field, AHEAD, made)?;
         self.w.particles.x = base;
         for i in 0..n {
             for d in 0..3 {
@@ -109,26 +144,42 @@ impl<'a> Balance<'a> {
             }
         }
         // The next load step begins with this one's motion.
-        self.last = field;
-        self.balance(made)
+        self.last = (field, share);
+        self.balance_from(FORCING, made)
     }
 
-    /// Newton's steps from where the particles are to balance.
-    pub fn balance(&mut self, made: &mut Numbers) -> Result<()> {
+    /// Puts what stands on paths at their ends.
+    pub fn step_along(&mut self) {
+        for (x, path) in self.w.particles.x.iter_mut().zip(&self.path) {
+            *x = std::array::from_fn(|d| x[d] + path[d]);
+        }
+    }
+
+    /// From where the particles are to balance, by Newton's steps or by relaxation. `false`: it was not found.
+    pub fn balance(&mut self, made: &mut Numbers) -> Result<bool> {
+        if self.goal.solver == Solver::Adr {
+            return self.relax(made);
+        }
+        // Bodies that one bond less has brought out of balance are almost linear from here to balance.
+        self.balance_from(0.0, made)
+    }
+
+    /// The same by Newton's steps, of which the first linear system is solved up to this part of its load or the tolerance.
+    fn balance_from(&mut self, forcing: f64, made: &mut Numbers) -> Result<bool> {
         self.residual(true)?;
         let mut r = self.unbalanced();
         let mut size = norm(&r);
-        let (mut forcing, mut idle) = (FORCING, 0);
+        let (mut forcing, mut idle) = (forcing, 0);
         for _ in 0..STEPS {
             let scale = self.ledger.scale(self.w, &self.body).max(f64::MIN_POSITIVE);
             made.force = size / scale;
             if size == 0.0 || made.force <= self.goal.tol || (idle > 1 && made.force <= ROUNDING) {
-                return Ok(());
+                return Ok(true);
             }
-            forcing = forcing.max(0.1 * self.goal.tol * scale / size).min(FORCING);
-            let base = self.w.particles.x.clone();
+            forcing = forcing.max(EXACT * self.goal.tol * scale / size).min(FORCING);
+            let (base, here) = (self.w.particles.x.clone(), self.w.particles.f.clone());
             let mut field = vec![[0.0; 6]; r.len()];
-            self.solve(&base, &r, &mut field, forcing, made)?;
+            self.solve((&base, &here), &r, &mut field, forcing, made)?;
             made.newton += 1;
             let mut along = inner(&r, &field);
             if along <= 0.0 {
@@ -154,17 +205,20 @@ impl<'a> Balance<'a> {
                     break;
                 }
                 if halving == HALVINGS {
-                    return Err(self.stuck(made));
+                    return Ok(false);
                 }
                 part *= 0.5;
             }
+            // The error of the energy norm falls with the force: e² = r·K⁻¹r, of which r·u was the value before the step.
+            made.error = along.max(0.0).sqrt() * size / before;
             forcing = (size / before).powi(2).clamp(1e-4, FORCING);
             idle = if size > 0.5 * before { idle + 1 } else { 0 };
         }
-        Err(self.stuck(made))
+        Ok(false)
     }
 
-    fn stuck(&self, made: &Numbers) -> Diagnostics {
+    /// Why a load step ends the line.
+    pub fn stuck(&self, made: &Numbers) -> Diagnostics {
         let text = format!(
             "load step {} cannot be balanced: after {} of Newton's steps {:.1e} of the reactions are left",
             self.w.clock.step - self.w.clock.first,
@@ -175,16 +229,14 @@ impl<'a> Balance<'a> {
         d.help("more load steps, fewer loads at a time, or a `run` where the body gives way").into()
     }
 
-    /// Looks at an equilibrium, behind a break or not: what is remembered is remembered, what breaks breaks. The number of bonds
-    /// that broke; where none did, output follows.
-    pub fn settle(&mut self, torn: bool) -> Result<usize> {
-        let mut t = tick(self.w, false);
-        self.plan.request_sums(&mut t);
-        (t.energy, t.atom_energy) = (true, true);
+    /// Looks at an equilibrium, behind a break or not: what is remembered is remembered, and if `breaks`, bonds beyond their limits
+    /// break. The number of bonds that broke.
+    pub fn settle(&mut self, torn: bool, breaks: bool) -> Result<usize> {
+        let t = Tick { dt: self.time_left(), ..self.tick_of_sums(false) };
         let bonds = self.w.bonds.list.len();
         if let Some(families) = &mut *self.w.families {
             families.breaking_share = self.goal.breaking.share();
-            families.breaking_enabled &= self.goal.breaking != Breaking::No;
+            families.breaking_enabled &= breaks && self.goal.breaking != Breaking::No;
         }
         self.w.slots.invalidate();
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force])?;
@@ -193,31 +245,42 @@ impl<'a> Balance<'a> {
         if let Some(families) = &mut *self.w.families {
             families.breaking_share = None;
         }
-        self.plan.run(self.w, &t, &[Stage::EndOfStep])?;
+        self.part[1] = self.part[0];
         self.ledger.balanced(self.w, &self.body, torn);
         let of_families = self.w.families.as_ref().map_or(0, |families| families.broken().len());
         let broken = of_families + bonds.saturating_sub(self.w.bonds.list.len());
         if broken > 0 {
+            self.stale += broken;
             self.look_at_energy()?;
             self.ledger.broken(self.w, &self.body);
-            return Ok(broken);
         }
-        self.plan.run(self.w, &t, &[Stage::Output])?;
-        Ok(0)
+        Ok(broken)
+    }
+
+    /// What belongs to the end of a step: averages, rows, dumps.
+    pub fn output(&mut self) -> Result<()> {
+        let t = self.tick_of_sums(false);
+        self.plan.run(self.w, &t, &[Stage::EndOfStep, Stage::Output])
+    }
+
+    /// The tick of an evaluation in which energies are added up.
+    pub fn tick_of_sums(&mut self, setup: bool) -> Tick {
+        let mut t = tick(self.w, setup);
+        self.plan.request_sums(&mut t);
+        (t.energy, t.atom_energy) = (true, true);
+        t
     }
 
     /// Forces and energies here; nothing breaks or is remembered.
     fn look_at_energy(&mut self) -> Result<()> {
         self.w.slots.invalidate();
-        let mut t = Tick { trial: true, ..tick(self.w, false) };
-        self.plan.request_sums(&mut t);
-        (t.energy, t.atom_energy) = (true, true);
+        let t = Tick { trial: true, dt: self.time_left(), ..self.tick_of_sums(false) };
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force, Stage::PostForce])
     }
 
     /// Forces where the particles are. With `lists`, lists of neighbours are made anew where they have to be.
-    fn residual(&mut self, lists: bool) -> Result<()> {
-        let t = Tick { trial: true, ..tick(self.w, false) };
+    pub fn residual(&mut self, lists: bool) -> Result<()> {
+        let t = Tick { trial: true, dt: self.time_left(), ..tick(self.w, false) };
         let before: &[Stage] = if lists {
             &[Stage::Neighbor, Stage::PreForce, Stage::Force]
         } else {
@@ -231,7 +294,7 @@ impl<'a> Balance<'a> {
     }
 
     /// The forces on free components [force].
-    fn unbalanced(&self) -> Vec<Six> {
+    pub fn unbalanced(&self) -> Vec<Six> {
         let (f, body, blocks) = (&self.w.particles.f, &self.body, &self.blocks);
         let mut out = vec![[0.0; 6]; f.len()];
         par::each((&mut out[..], &f[..], &body.weight[..]), |start, (out, f, weight)| {
@@ -243,25 +306,17 @@ impl<'a> Balance<'a> {
         out
     }
 
-    /// Forces where led particles have moved from `base` by a part of their path.
-    fn forces_at(&mut self, base: &[[f64; 3]], part: f64) -> Result<Vec<Six>> {
-        for ((x, from), path) in self.w.particles.x.iter_mut().zip(base).zip(&self.path) {
-            *x = std::array::from_fn(|d| from[d] + part * path[d]);
-        }
-        self.residual(false)?;
-        Ok(self.unbalanced())
-    }
-
     fn place(&mut self, base: &[[f64; 3]], field: &[Six], part: f64) {
         for ((x, from), u) in self.w.particles.x.iter_mut().zip(base).zip(field) {
             *x = std::array::from_fn(|d| from[d] + part * u[d]);
         }
     }
 
-    /// Solves K u = load with the tangent stiffness at `base`, from `field` on, until `forcing` of the load is left.
+    /// Solves K u = load with the tangent stiffness at `base`, where the forces are `here`, from `field` on, until `forcing` of the
+    /// load is left. A product is the difference of the forces a little further along and those here.
     fn solve(
         &mut self,
-        base: &[[f64; 3]],
+        (base, here): (&[[f64; 3]], &[[f64; 3]]),
         load: &[Six],
         field: &mut [Six],
         forcing: f64,
@@ -282,28 +337,21 @@ impl<'a> Balance<'a> {
             *products.borrow_mut() += 1;
             let step = size / most;
             let mut me = me.borrow_mut();
-            let sides = [step, -step].map(|step| {
-                for ((x, from), u) in me.w.particles.x.iter_mut().zip(base).zip(p) {
-                    *x = std::array::from_fn(|d| from[d] + step * u[d]);
-                }
-                me.residual(false).map(|()| me.w.particles.f.clone())
-            });
-            match sides {
-                [Ok(ahead), Ok(behind)] => {
-                    let weight = &me.body.weight;
-                    let columns = (&mut *out, &ahead[..], &behind[..], &weight[..]);
-                    par::each(columns, |_, (out, ahead, behind, weight)| {
-                        for (k, out) in out.iter_mut().enumerate() {
-                            let of = |d: usize| (behind[k][d] - ahead[k][d]) * weight[k] / (2.0 * step);
-                            *out = [of(0), of(1), of(2), 0.0, 0.0, 0.0];
-                        }
-                    });
-                }
-                [Err(e), _] | [_, Err(e)] => {
-                    *failed.borrow_mut() = Some(e);
-                    out.fill([0.0; 6]);
-                }
+            for ((x, from), u) in me.w.particles.x.iter_mut().zip(base).zip(p) {
+                *x = std::array::from_fn(|d| from[d] + step * u[d]);
             }
+            if let Err(e) = me.residual(false) {
+                *failed.borrow_mut() = Some(e);
+                out.fill([0.0; 6]);
+                return;
+            }
+            let columns = (&mut *out, here, &me.w.particles.f[..], &me.body.weight[..]);
+            par::each(columns, |_, (out, here, there, weight)| {
+                for (k, out) in out.iter_mut().enumerate() {
+                    let of = |d: usize| (here[k][d] - there[k][d]) * weight[k] / step;
+                    *out = [of(0), of(1), of(2), 0.0, 0.0, 0.0];
+                }
+            });
         };
         let make = || parts_of(&blocks);
         let mut by = match network.bonds() {
@@ -325,10 +373,10 @@ impl<'a> Balance<'a> {
     }
 }
 
-fn norm(r: &[Six]) -> f64 {
+pub(super) fn norm(r: &[Six]) -> f64 {
     inner(r, r).sqrt()
 }
 
-fn inner(a: &[Six], b: &[Six]) -> f64 {
+pub(super) fn inner(a: &[Six], b: &[Six]) -> f64 {
     par::sum(a.len(), |k| a[k][0] * b[k][0] + a[k][1] * b[k][1] + a[k][2] * b[k][2])
 }

@@ -15,6 +15,8 @@ pub struct Ledger {
     pub released: f64,
     /// Energy given up on the way from a break to the next equilibrium, which motion would have carried away.
     pub relaxed: f64,
+    /// Energy that bonds lose which flow, soften or relax, with the error of load steps where bonds do so.
+    pub lost: f64,
     /// What work is beyond all these: the error of the mean of forces in load steps, and of equilibria.
     pub error: f64,
 }
@@ -23,6 +25,8 @@ pub struct Ledger {
 #[derive(Debug, Default)]
 pub(super) struct Books {
     numbers: Ledger,
+    /// Bonds remember: they flow, soften or relax.
+    pub remembers: bool,
     first: f64,
     /// The energy at the last equilibrium, or behind the last break.
     last: f64,
@@ -96,7 +100,12 @@ impl Books {
         self.numbers.work += work;
         self.numbers.energy = energy - self.first;
         let given_up = self.last + work - energy;
-        *if torn { &mut self.numbers.relaxed } else { &mut self.numbers.error } += given_up;
+        let numbers = &mut self.numbers;
+        *match (torn, self.remembers) {
+            (true, _) => &mut numbers.relaxed,
+            (false, true) => &mut numbers.lost,
+            (false, false) => &mut numbers.error,
+        } += given_up;
         self.last = energy;
         self.keep(w);
     }

@@ -5,9 +5,11 @@
 //! breaks, flows or is remembered while places are only tried. At an equilibrium the bonds stretched beyond their limit
 //! break, some at a time, and the body is balanced again at the same loads.
 
+mod adr;
 mod balance;
 mod bodies;
 mod ledger;
+mod path;
 
 use super::verlet::{cpu_seconds, tick};
 use super::{Made, Outcome, Watch};
@@ -15,11 +17,15 @@ use crate::{Stage, StepPlan};
 use balance::Balance;
 pub use bodies::Body;
 pub use ledger::Ledger;
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::Result;
 use perigrain_base::par;
 use perigrain_statics::network::Network;
+use perigrain_world::named::Constant;
 use perigrain_world::{Halt, World};
 use std::time::Instant;
+
+/// The numbers of the load step that was made last.
+pub static NUMBERS: Constant<Numbers> = Constant::new("statics");
 
 /// Which bonds beyond their limit break at an equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +51,24 @@ impl Breaking {
     }
 }
 
+/// How the load of a load step is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    /// Time moves by the same amount in each load step.
+    Load,
+    /// Time moves, forwards or back, to where the next bond is at its limit, and this bond breaks.
+    Damage,
+}
+
+/// How equilibria are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Newton's method and conjugate gradients.
+    Newton,
+    /// Adaptive dynamic relaxation.
+    Adr,
+}
+
 /// What a line of `statics` requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
@@ -56,6 +80,14 @@ pub struct Goal {
     pub breaking: Breaking,
     /// Equilibria of one load step at most, each with other bonds.
     pub most: usize,
+    /// How its load is found.
+    pub control: Control,
+    /// Load steps end where the load has fallen to this share of its peak.
+    pub until: Option<f64>,
+    /// Load steps are cut where no balance is found.
+    pub adapt: bool,
+    /// How equilibria are found.
+    pub solver: Solver,
 }
 
 /// How a load step went, or all of them together.
@@ -71,6 +103,10 @@ pub struct Numbers {
     pub products: usize,
     /// Unbalanced force over reactions and loads.
     pub force: f64,
+    /// The estimated error of the energy norm, as a root of energy.
+    pub error: f64,
+    /// The larger one of the two-norms of reactions and loads [force].
+    pub load: f64,
     /// Bonds that broke.
     pub broken: usize,
     /// Energies from the first load step on.
@@ -79,11 +115,20 @@ pub struct Numbers {
     pub seconds: f64,
 }
 
+/// What load steps read from a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    /// The bonds that live, as springs.
+    pub springs: fn(&World) -> Network,
+    /// The largest load ratio of bonds, after an evaluation of forces.
+    pub ratio: fn(&World) -> f64,
+}
+
 /// Takes note of a load step.
 pub type Note<'a> = &'a mut dyn FnMut(&Numbers);
 
 /// Makes load steps until `goal.steps` are made; output appears as in a run. `body` finds what may move, once
-/// forces have been computed, and `springs` the bonds that still live; `note` gets the numbers of each load step.
+/// forces have been computed; `note` gets the numbers of each load step.
 ///
 /// # Errors
 /// The first op's that fails; bodies that cannot be balanced.
@@ -91,17 +136,18 @@ pub fn statics(
     plan: &mut StepPlan,
     w: &mut World,
     watch: &mut dyn Watch,
-    (body, springs): (impl FnOnce(&World) -> Result<Body>, fn(&World) -> Network),
+    (body, scene): (impl FnOnce(&World) -> Result<Body>, Scene),
     goal: Goal,
     note: Note,
 ) -> Result<(Outcome, Numbers)> {
     let (first, clock, cpu) = (w.clock.step, Instant::now(), cpu_seconds());
     begin(plan, w)?;
     let body = body(w)?;
-    let mut balance = Balance::new(plan, w, body, goal);
+    let mut balance = Balance::new(plan, w, body, (scene, goal));
     balance.begin()?;
+    implicit(balance.w, true);
     let mut all = Numbers { time: balance.w.clock.time(), ..Numbers::default() };
-    let mut interrupted = false;
+    let (mut interrupted, mut peak) = (false, 0.0f64);
     while balance.w.clock.step < balance.w.clock.last && balance.w.clock.halt == Halt::No {
         // All ranks end behind the same load step.
         balance.w.settings.agree_at(balance.w.clock.step);
@@ -113,9 +159,7 @@ pub fn statics(
         let mut made = par::inside(|| balance.load_step())?;
         made.seconds = start.elapsed().as_secs_f64();
         note(&made);
-        if made.broken > 0 {
-            balance.renew(springs(balance.w));
-        }
+        balance.renew(0);
         all = Numbers {
             newton: all.newton + made.newton,
             products: all.products + made.products,
@@ -128,12 +172,24 @@ pub fn statics(
         if watch.looks(balance.w) {
             watch.scene(balance.w);
         }
+        peak = peak.max(made.load);
+        if goal.until.is_some_and(|share| made.load < share * peak) {
+            break;
+        }
     }
+    implicit(w, false);
     let steps = w.clock.step - first;
-    w.clock.stop = w.clock.last;
+    (w.clock.last, w.clock.stop) = (w.clock.step, w.clock.step);
     all.seconds = clock.elapsed().as_secs_f64();
     let outcome = Outcome { steps, time: clock.elapsed(), cpu: cpu_seconds() - cpu, interrupted };
     Ok((outcome, all))
+}
+
+/// Whether bonds flow, soften and relax where places are tried.
+fn implicit(w: &mut World, yes: bool) {
+    if let Some(families) = &mut *w.families {
+        families.implicit = yes;
+    }
 }
 
 /// Forces of the scene as it is found, at rest: bodies are built in the first ones.
@@ -151,37 +207,47 @@ fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
 impl Balance<'_> {
     /// Energy and output of the first scene.
     fn begin(&mut self) -> Result<()> {
-        let mut t = tick(self.w, true);
-        self.plan.request_sums(&mut t);
-        (t.energy, t.atom_energy) = (true, true);
+        self.w.facts.insert(*NUMBERS, Numbers { time: self.w.clock.time(), ..Numbers::default() });
+        let t = self.tick_of_sums(true);
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force])?;
         self.ledger.inner(self.w, &self.body);
         self.plan.run(self.w, &t, &[Stage::PostForce, Stage::EndOfStep])?;
         self.ledger.begin(self.w, &self.body);
+        self.ledger.remembers =
+            self.w.families.as_ref().is_some_and(|families| families.law.kind.memory() > 0);
         self.plan.reset_meters(true);
         self.plan.run(self.w, &t, &[Stage::Output])
     }
 
-    /// Moves the clock by one load step and balances the body there.
+    /// Makes one load step.
     fn load_step(&mut self) -> Result<Numbers> {
         let mut made = Numbers::default();
-        self.lead()?;
-        self.follow(&mut made)?;
-        for round in 0.. {
-            let broken = self.settle(round > 0)?;
-            if broken == 0 {
-                break;
+        (self.start, self.part) = (path::Start::of(self.w), [0.0; 2]);
+        match self.goal.control {
+            Control::Load => {
+                self.to_the_end(&mut made)?;
+                self.finish(&mut made)?;
             }
-            made.broken += broken;
-            if round == self.goal.most {
-                let text = format!("bonds still break after {round} equilibria of this load step");
-                let d = Diagnostic::error(Code::HALTED, None, text);
-                return Err(d.help("more load steps, or a larger `most`").into());
+            Control::Damage => {
+                made.broken = self.to_the_limit(&mut made)?;
+                self.finish(&mut made)?;
+                if made.broken > 0 {
+                    self.rebalance(&mut made)?;
+                    self.settle(true, false)?;
+                    self.ratio.0 = self.load_ratio()?;
+                }
             }
-            self.balance(&mut made)?;
         }
+        self.w.clock.set_dt(self.start.dt());
+        Ok(made)
+    }
+
+    /// Notes the numbers of a load step, and lets output follow.
+    fn finish(&mut self, made: &mut Numbers) -> Result<()> {
         (made.step, made.time) = (self.w.clock.step - self.w.clock.first, self.w.clock.time());
         made.ledger = self.ledger.numbers();
-        Ok(made)
+        made.load = self.ledger.scale(self.w, &self.body);
+        self.w.facts.insert(*NUMBERS, *made);
+        self.output()
     }
 }
