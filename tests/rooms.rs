@@ -19,6 +19,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     // A macro: knows Rust alone.
     ("words", &[]),
     ("base", &["comm"]),
+    // Laws of stress and strain: functions of 3×3 matrices, without the rest of the house.
+    ("constitutive", &[]),
     ("bonded", &["base"]),
     // Equilibria of whole bodies, and the limit of their step.
     ("statics", &["base", "bonded"]),
