@@ -22,8 +22,6 @@ struct Strained {
     volume: f64,
     /// dev ε.
     deviator: Sym3,
-    /// Principal values of dev ε, the largest first.
-    values: [f64; 3],
     /// F⁻ᵀ.
     inverse: Mat3,
 }
@@ -36,9 +34,8 @@ impl Strained {
             return Err(Failure::Inverted(jacobian));
         }
         let b = carried(f, plastic);
-        let (strain, values) = half_logarithm(&plus(&b, -1.0)).ok_or(Failure::Inverted(jacobian))?;
-        let volume = trace(&strain);
-        Ok(Self { volume, deviator: deviator(&strain), values: values.map(|x| x - volume / 3.0), inverse })
+        let strain = half_logarithm(&plus(&b, -1.0)).ok_or(Failure::Inverted(jacobian))?;
+        Ok(Self { volume: trace(&strain), deviator: deviator(&strain), inverse })
     }
 
     /// P = τ F⁻ᵀ, energy and equivalent stress.
@@ -56,17 +53,10 @@ impl Strained {
         }
     }
 
-    /// Scales the deviator of the strain.
-    fn scale(&mut self, factor: f64) {
-        self.deviator = scaled(&self.deviator, factor);
-        self.values = self.values.map(|x| factor * x);
-    }
-
     /// C_p⁻¹ = F⁻¹ exp(2ε) F⁻ᵀ.
     fn plastic(&self) -> Sym3 {
-        let third = self.volume / 3.0;
-        let twice = scaled(&plus(&self.deviator, third), 2.0);
-        carried_back(&self.inverse, &exponential(&twice, self.values.map(|x| 2.0 * (x + third))))
+        let twice = scaled(&plus(&self.deviator, self.volume / 3.0), 2.0);
+        carried_back(&self.inverse, &exponential(&twice))
     }
 }
 
@@ -96,7 +86,7 @@ impl Elastic {
         let Some((step, [before, after])) = returned(hardening, self.shear, q, memory.strain)? else {
             return Ok(strained.response(self, *memory));
         };
-        strained.scale(1.0 - 3.0 * self.shear * step / q);
+        strained.deviator = scaled(&strained.deviator, 1.0 - 3.0 * self.shear * step / q);
         let memory = match moment.advance {
             true => {
                 Memory { plastic: unimodular(strained.plastic()), strain: memory.strain + step, ..*memory }
@@ -108,7 +98,9 @@ impl Elastic {
     }
 }
 
-/// Flow without change of volume keeps det C_p = 1: rounding would add up over steps.
+/// Flow without change of volume keeps det C_p = 1: rounding would add up over steps. The determinant is 1 to rounding, so
+/// that a step of Newton's method is its cube root.
+#[inline]
 fn unimodular(plastic: Sym3) -> Sym3 {
-    scaled(&plastic, determinant(&plastic).cbrt().recip())
+    scaled(&plastic, 1.0 - (determinant(&plastic) - 1.0) / 3.0)
 }

@@ -11,7 +11,7 @@ fn turned(values: [f64; 3], seed: u64) -> Sym3 {
 }
 
 /// Principal values: apart, equal, nearly equal, large and tiny.
-const VALUES: [[f64; 3]; 10] = [
+const VALUES: [[f64; 3]; 14] = [
     [0.3, 0.1, -0.2],
     [0.3, 0.3, -0.2],
     [0.3, -0.2, -0.2],
@@ -22,21 +22,24 @@ const VALUES: [[f64; 3]; 10] = [
     [40.0, 1e-3, -0.9],
     [1e-9, 0.0, -1e-9],
     [0.0, 0.0, 0.0],
+    // Series: the edge of their range, and a large change of volume.
+    [0.07, 0.02, -0.024],
+    [0.07, 0.02, -0.026],
+    [9.3, 9.0, 8.8],
+    [-0.9, -0.902, -0.904],
 ];
 
 #[test]
 fn logarithms_are_those_of_principal_values_also_where_these_agree() {
     for (k, values) in VALUES.into_iter().enumerate() {
         for seed in 0..50 {
-            let (log, logs) = half_logarithm(&turned(values, seed)).unwrap();
+            let log = half_logarithm(&turned(values, seed)).unwrap();
             let expected = turned(values.map(|x| 0.5 * x.ln_1p()), seed);
             // Rounding of A, times the largest slope 1/(1 + least) of the logarithm.
             let size = values.iter().fold(0f64, |a, x| a.max(x.abs())) / (1.0 + values[2]);
             for (a, b) in log.iter().zip(&expected) {
                 assert!((a - b).abs() <= 8.0 * f64::EPSILON * size, "{k} {seed}: {log:?} {expected:?}");
             }
-            let sum = logs.iter().sum::<f64>() - (log[0] + log[1] + log[2]);
-            assert!(sum.abs() <= 8.0 * f64::EPSILON * size, "{k}: {sum}");
         }
     }
 }
@@ -46,8 +49,8 @@ fn exponentials_undo_logarithms() {
     for (k, values) in VALUES.into_iter().enumerate() {
         for seed in 0..50 {
             let a = turned(values, seed);
-            let (log, logs) = half_logarithm(&a).unwrap();
-            let back = exponential(&scaled(&log, 2.0), logs.map(|x| 2.0 * x));
+            let log = half_logarithm(&a).unwrap();
+            let back = exponential(&scaled(&log, 2.0));
             // Rounding of the logarithm, times the slope of the exponential.
             let most = 1.0 + values[0];
             for (x, y) in back.iter().zip(&plus(&a, 1.0)) {
