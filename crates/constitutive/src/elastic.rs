@@ -36,7 +36,7 @@ impl Elastic {
     /// J = det F is not positive.
     pub fn neo_hooke(&self, f: &Mat3, memory: &Memory) -> Result<Response, Failure> {
         let (jacobian, inverse) = inverse_transposed(f);
-        if !(jacobian > 0.0) {
+        if jacobian <= 0.0 {
             return Err(Failure::Inverted(jacobian));
         }
         let (lame, log) = (self.bulk - 2.0 / 3.0 * self.shear, jacobian.ln());

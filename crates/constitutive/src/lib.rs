@@ -7,18 +7,26 @@
 // Units stand in brackets in doc comments, as [pressure]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod damage;
+mod drucker_prager;
 mod elastic;
 mod flow;
 mod hardening;
+mod heat;
+mod johnson_cook;
 mod logarithmic;
 mod material;
 mod site;
 mod spectral;
 mod tensor;
 
+pub use damage::{Damage, Onset};
+pub use drucker_prager::DruckerPrager;
 pub use elastic::Elastic;
 pub use flow::Flow;
-pub use hardening::Hardening;
+pub use hardening::{Flowing, Hardening};
+pub use heat::Heating;
+pub use johnson_cook::{FractureStrain, JohnsonCook, Reference};
 pub use material::{Law, Material};
 pub use site::{Failure, Memory, Moment, Response};
 pub use tensor::{Mat3, Sym3};

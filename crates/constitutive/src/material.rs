@@ -1,5 +1,6 @@
 //! A material: elastic constants and a law.
 
+use crate::damage::Damage;
 use crate::elastic::Elastic;
 use crate::flow::Flow;
 use crate::site::{Failure, Memory, Moment, Response};
@@ -14,8 +15,13 @@ pub enum Law {
     NeoHooke,
     /// Logarithmic strain: τ = K tr ε + 2G dev ε, ε = ½ ln FFᵀ.
     Hencky,
-    /// Logarithmic elastic strain, and plastic flow.
-    Plastic(Flow),
+    /// Logarithmic elastic strain, plastic flow, and damage that softens.
+    Plastic {
+        /// Yield surface and flow rule.
+        flow: Flow,
+        /// Damage by flow; `None`: none.
+        damage: Option<Damage>,
+    },
 }
 
 /// A material of which sites are made.
@@ -41,7 +47,7 @@ impl Material {
             Law::Linear => Ok(self.elastic.linear(f, memory)),
             Law::NeoHooke => self.elastic.neo_hooke(f, memory),
             Law::Hencky => self.elastic.hencky(f, memory),
-            Law::Plastic(flow) => self.elastic.plastic(flow, f, memory, moment),
+            Law::Plastic { flow, damage } => self.elastic.plastic((flow, damage.as_ref()), f, memory, moment),
         }
     }
 
@@ -57,6 +63,6 @@ impl Material {
 
     /// Whether sites remember anything: elastic laws return the memory that they are given.
     pub fn remembers(&self) -> bool {
-        matches!(self.law, Law::Plastic(_))
+        matches!(self.law, Law::Plastic { .. })
     }
 }

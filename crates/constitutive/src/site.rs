@@ -77,6 +77,9 @@ pub enum Failure {
     /// The deformation gradient has a determinant that is not positive.
     #[error("matter is turned inside out (det F = {0:.3e})")]
     Inverted(f64),
+    /// Matter is so flat or so long that its strain is no number.
+    #[error("strains are beyond the precision of numbers (det F = {0:.3e})")]
+    Flat(f64),
     /// The deformation gradient has entries that are no finite numbers.
     #[error("the deformation gradient is not finite")]
     NotFinite,

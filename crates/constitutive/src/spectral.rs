@@ -50,7 +50,7 @@ const EXPONENTIAL: [f64; 13] = {
 #[inline]
 pub fn half_logarithm(a: &Sym3) -> Option<Sym3> {
     let mean = trace(a) / 3.0;
-    if !(1.0 + mean > 0.0) {
+    if mean <= -1.0 {
         return None;
     }
     // 1 + A = (1 + mean)(1 + X) with a deviator X.
@@ -67,7 +67,7 @@ pub fn half_logarithm(a: &Sym3) -> Option<Sym3> {
 fn far_logarithm(a: &Sym3) -> Option<Sym3> {
     let values = principal(a);
     let [most, middle, least] = values;
-    if !(1.0 + least > 0.0) {
+    if least <= -1.0 {
         return None;
     }
     // (ln(1 + y) − ln(1 + x))/(y − x).

@@ -10,7 +10,7 @@ const ROUNDING: f64 = 1e-14;
 #[test]
 fn simple_shear_of_hencky_and_neo_hooke() {
     let [hencky, neo] = [Law::Hencky, Law::NeoHooke].map(|law| Material { elastic: ELASTIC, law });
-    // τ₁₂/G = 2 asinh(γ/2)/√(1 + γ²/4): the axes of FFᵀ turn as γ grows. Eight digits as printed by closed.py.
+    // τ₁₂/G = 2 asinh(γ/2)/√(1 + γ²/4): the axes of FFᵀ turn as γ grows. Eight digits as printed by an independent program.
     for (gamma, expected) in
         [(0.1, 0.09983367), (0.5, 0.48015546), (1.0, 0.86081788), (2.0, 1.24645048), (5.0, 1.22353258)]
     {

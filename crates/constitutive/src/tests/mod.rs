@@ -1,8 +1,10 @@
 //! Laws against closed forms and against properties that every law has.
 
+mod damage;
 mod elastic;
 mod functions;
 mod plastic;
+mod pressure;
 mod properties;
 
 use crate::{Elastic, Hardening, Law, Mat3, Material, Memory, Moment, Response, Sym3};
@@ -15,7 +17,12 @@ const UNIT: Mat3 = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A material of Hencky elasticity with Mises flow.
 fn mises(young: f64, nu: f64, hardening: Hardening) -> Material {
-    Material { elastic: Elastic::from_young(young, nu), law: Law::Plastic(crate::Flow::Mises(hardening)) }
+    Material { elastic: Elastic::from_young(young, nu), law: flowing(hardening) }
+}
+
+/// Mises flow without damage.
+fn flowing(hardening: Hardening) -> Law {
+    Law::Plastic { flow: crate::Flow::Mises(hardening), damage: None }
 }
 
 /// A B.
