@@ -16,6 +16,7 @@ mod heat;
 mod johnson_cook;
 mod logarithmic;
 mod material;
+pub mod sheet;
 mod site;
 mod spectral;
 mod tensor;

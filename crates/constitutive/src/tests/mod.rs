@@ -6,6 +6,7 @@ mod functions;
 mod plastic;
 mod pressure;
 mod properties;
+mod sheet;
 
 use crate::{Elastic, Hardening, Law, Mat3, Material, Memory, Moment, Response, Sym3};
 use perigrain_base::math::scatter::uniform;
