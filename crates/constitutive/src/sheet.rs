@@ -114,9 +114,15 @@ impl Sheet {
         self.table.iter_mut().for_each(|point| point[1] *= factor(Quantity::Pressure));
     }
 
-    /// Whether it has data of flow: a law that ignores them is another material.
-    pub fn flows(&self) -> bool {
-        self.hardening.is_some() || [Key::Yield, Key::Cohesion].iter().any(|key| self.get(*key).is_some())
+    /// The keys that are given, for laws that use none of them.
+    pub fn given(&self) -> Vec<&'static str> {
+        let choices = [
+            ("elastic", self.elastic.is_some()),
+            ("hardening", self.hardening.is_some()),
+            ("table", !self.table.is_empty()),
+        ];
+        let choices = choices.into_iter().filter(|(_, given)| *given).map(|(key, _)| key);
+        choices.chain(Key::ALL.into_iter().filter(|key| self.get(*key).is_some()).map(Key::name)).collect()
     }
 
     /// The first number that no matter has.
@@ -310,7 +316,9 @@ impl Reading<'_> {
                 format!("`hardening {name}`")
             }
             (None, Some(_)) => "flow of Drucker and Prager".into(),
-            (None, None) if self.sheet.flows() => "a yield stress without `hardening`".into(),
+            (None, None) if self.sheet.get(Key::Yield).is_some() => {
+                "a yield stress without `hardening`".into()
+            }
             (None, None) => "matter without `yield`, `hardening` or `cohesion`, which is elastic,".into(),
         };
         let unused =

@@ -28,7 +28,7 @@ fn an_empty_sheet_is_elastic() {
     {
         let sheet = Sheet { elastic: strain, ..Sheet::default() };
         assert_eq!(sheet.material(ELASTIC), Ok(Material { elastic: ELASTIC, law }));
-        assert!(!sheet.flows());
+        assert_eq!(sheet.given().is_empty(), strain.is_none());
     }
 }
 
@@ -95,6 +95,7 @@ fn numbers_without_a_use_or_out_of_range_are_refused() {
     let mut cold = copper();
     cold.set(Tm, 100.0);
     assert_eq!(fault(&cold), ("Tm", false));
+    assert_eq!(cold.given()[..3], ["hardening", "yield", "n"]);
     let both = Sheet { elastic: Some(Strain::Linear), ..sheet(None, &[(Yield, 1.0)]) };
     assert_eq!(fault(&both), ("elastic", false));
     for table in [vec![[0.1, 1.0]], vec![[0.0, 1.0], [0.0, 2.0]], vec![[0.0, -1.0]], vec![[0.0, f64::NAN]]] {
