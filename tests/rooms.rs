@@ -19,6 +19,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     // A macro: knows Rust alone.
     ("words", &[]),
     ("base", &["comm"]),
+    // Laws of stress and strain: functions of 3×3 matrices, without the rest of the house.
+    ("constitutive", &[]),
     ("bonded", &["base"]),
     // Equilibria of whole bodies, and the limit of their step.
     ("statics", &["base", "bonded"]),
@@ -26,14 +28,14 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("mesh", &["base"]),
     ("neigh", &["base"]),
     ("peri", &["base"]),
-    ("world", &["base", "mesh", "peri"]),
+    ("world", &["base", "constitutive", "mesh", "peri"]),
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "statics", "world"]),
     ("output", &["base", "world"]),
     ("styles", &["base", "bonded", "lang", "mesh", "neigh", "output", "peri", "plan", "words", "world"]),
     // Readers of files with bodies and scenes, and what makes particles of them.
     ("geometry", &["base", "lang", "mesh", "output", "styles", "world"]),
-    ("commands", &["base", "geometry", "lang", "mesh", "neigh", "output", "styles", "world"]),
+    ("commands", &["base", "constitutive", "geometry", "lang", "mesh", "neigh", "output", "styles", "world"]),
     // One command with all that belongs to it.
     ("calibrate", &["base", "bonded", "lang", "neigh", "output", "plan", "statics", "styles", "world"]),
     ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),

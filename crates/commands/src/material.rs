@@ -1,6 +1,10 @@
 //! `material`: engineering data under a name, for pair_coeff.
 
+mod flow;
+
+use flow::Flow;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, FileId, Result, Span, fail};
+use perigrain_constitutive::sheet::{Fault, Sheet};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::words::{At, Each, Form, Given, Syntax, Words, read_or};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
@@ -31,10 +35,15 @@ impl Style for MaterialStyle {
             ),
             summary: "Gives engineering data a name, so that pair_coeff can turn them into coefficients.",
             text: "`E`, `nu` and `rho` are needed, in the line or in the file; without `Gc` or `s00` bonds never break.\n\n\
+                   Other words are of laws of stress and strain, which `pair_style peri/cauchy` takes. `yield` alone flows without \
+                   hardening. `hardening linear` needs H, `voce` sigma_inf and b (and may have H), `swift` eps0 and n, `table` a file, \
+                   `johnson-cook` B, n, C, m, rate0, Tr and Tm. `cohesion`, `phi` and `psi` (and H) make flow of Drucker and Prager in \
+                   place of that of Mises. Damage begins at `eps_f`, or where wear by D1 to D5 is complete (with rate0, Tr and Tm), and \
+                   softens until `Gf` is spent. A number without a use in the law is refused.\n\n\
                    Numbers in the line are in the deck's units. A file carries its own units and is converted (`units si cgs micro \
                    nano`). It is looked for beside the deck, in the working folder, then among the files built into perigrain: \
                    alumina.toml, brittle-plate.toml, impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to \
-                   laminate-ply-4.toml, soda-lime-glass.toml, steel.toml.",
+                   laminate-ply-4.toml, ofhc-copper.toml, soda-lime-glass.toml, steel-4340.toml, steel.toml.",
             example: "material plate file brittle-plate.toml Gc 50",
         }
     }
@@ -44,6 +53,8 @@ impl Style for MaterialStyle {
 struct InLine {
     #[word(flatten)]
     properties: Each<Property>,
+    #[word(flatten)]
+    flow: Each<Flow>,
 }
 
 #[derive(Words)]
@@ -53,6 +64,8 @@ struct FromFile {
     file: Word,
     #[word(flatten)]
     properties: Each<Property>,
+    #[word(flatten)]
+    flow: Each<Flow>,
 }
 
 /// What a line says of a material.
@@ -88,16 +101,26 @@ impl CommandStyle for MaterialStyle {
         if cx.world.materials.contains_key(&id.text) && !again {
             return fail(Code::DUPLICATE_NAME, id.span, format!("there already is a material `{}`", id.text));
         }
-        let (base, properties) = match args.eat("file") {
-            true => {
-                let line: FromFile = read_or(args, cx, no_yield)?;
-                (Some(from_file(&line.file, cx)?), line.properties)
-            }
-            false => (None, read_or::<InLine>(args, cx, no_yield)?.properties),
-        };
-        let material = material(properties, base, &id.text, args.span())?;
+        let material = read(&id.text, args, cx)?;
         Ok(Box::new(Define { id: id.text.clone(), material }))
     }
+}
+
+/// Reads the words behind the material's ID.
+fn read(id: &str, args: &mut Args, cx: &BuildCx) -> Result<Material> {
+    let (base, properties, flow) = match args.eat("file") {
+        true => {
+            let line: FromFile = read_or(args, cx, no_yield)?;
+            (Some((from_file(&line.file, cx)?, line.file)), line.properties, line.flow)
+        }
+        false => {
+            let line: InLine = read_or(args, cx, no_yield)?;
+            (None, line.properties, line.flow)
+        }
+    };
+    let (base, file) = base.unzip();
+    let material = material(properties, base, id, args.span())?;
+    flowing(flow, material, (id, file.as_ref()), args.span())
 }
 
 /// The refusal of a property that belongs to pair_coeff.
@@ -143,6 +166,35 @@ fn material(given: Each<Property>, base: Option<Material>, id: &str, line: Span)
     }
 }
 
+/// A material with what its line says of elastic laws, flow and damage over what its file says.
+fn flowing(
+    given: Each<Flow>,
+    mut m: Material,
+    (id, file): (&str, Option<&Word>),
+    line: Span,
+) -> Result<Material> {
+    let mut places: Vec<(String, Span)> = vec![];
+    let mut unknown = false;
+    for Given { word, value, .. } in given.0 {
+        if places.iter().any(|(key, _)| *key == word.text) {
+            return fail(Code::CONFLICT, word.span, format!("`{}` is given twice", word.text));
+        }
+        let (at, open) = value.put(&mut m.sheet, word.span);
+        unknown |= open;
+        places.push((word.text, at));
+    }
+    match m.constitutive() {
+        Err(Fault::Refused { .. }) if unknown => Ok(m),
+        Err(fault) => {
+            let (Fault::Missing { key, .. } | Fault::Refused { key, .. }) = &fault;
+            let place = places.iter().find(|(known, _)| known == key).map(|(_, at)| *at);
+            let place = place.or(file.map(|file| file.span)).unwrap_or(line);
+            Err(flow::fault(fault, id, file.map(|file| file.text.as_str()), place))
+        }
+        Ok(_) => Ok(m),
+    }
+}
+
 impl Property {
     /// Puts the value into a material, and returns it with its place.
     fn put(self, m: &mut Material) -> At<f64> {
@@ -168,6 +220,7 @@ fn blank(id: &str) -> Material {
         strength: None,
         alpha: 0.0,
         tensile: None,
+        sheet: Sheet::default(),
         source: String::new(),
         date: String::new(),
     }
@@ -242,6 +295,8 @@ impl Act for Define {
 mod tests {
     use super::*;
     use perigrain_base::units::UnitSystem;
+    use perigrain_constitutive::Law;
+    use perigrain_constitutive::sheet::Key;
     use perigrain_lang::Command;
     use perigrain_styles::{Names, Shape, UseKind};
     use perigrain_world::World;
@@ -287,14 +342,7 @@ mod tests {
         };
         let mut args = Args::new(&command);
         args.next();
-        let (base, properties) = match args.eat("file") {
-            true => {
-                let line: FromFile = read_or(&mut args, &cx, no_yield)?;
-                (Some(from_file(&line.file, &cx)?), line.properties)
-            }
-            false => (None, read_or::<InLine>(&mut args, &cx, no_yield)?.properties),
-        };
-        material(properties, base, "m", span)
+        super::read("m", &mut args, &cx)
     }
 
     fn si() -> World {
@@ -344,6 +392,45 @@ mod tests {
         assert_eq!(wrong(&format!("{full} E 2")), ("E".into(), Code::CONFLICT));
         assert_eq!(wrong(&format!("{full} syc -1")), ("syc".into(), Code::NOT_SUPPORTED));
         assert_eq!(wrong("material m file stel.toml"), ("stel.toml".into(), Code::NO_FILE));
+    }
+
+    #[test]
+    fn flow_in_the_line_and_over_a_file() {
+        let full = "material m E 117e9 nu 0.35 rho 8930";
+        let m =
+            parse(&si(), &format!("{full} yield 400e6 hardening linear H 100e6 eps_f 0.3 Gf 2e4")).unwrap();
+        assert!(matches!(m.constitutive().unwrap().law, Law::Plastic { damage: Some(_), .. }));
+        let m = parse(&si(), &format!("{full} elastic neohooke")).unwrap();
+        assert_eq!(m.constitutive().unwrap().law, Law::NeoHooke);
+        let m = parse(&si(), "material m file ofhc-copper.toml yield 120e6").unwrap();
+        assert_eq!((m.sheet.get(Key::Yield), m.sheet.get(Key::B)), (Some(120e6), Some(292e6)));
+    }
+
+    #[test]
+    fn mistakes_of_flow_name_the_key_the_law_and_an_example() {
+        let wrong = |line: &str| {
+            let d = parse(&si(), line).unwrap_err().0.remove(0);
+            let s = d.span.unwrap();
+            (line[s.start as usize..s.end as usize].to_owned(), d.code, d.message, d.help.join(" "))
+        };
+        let full = "material m E 117e9 nu 0.35 rho 8930";
+        let line = format!("{full} yield 400e6 hardening linear");
+        let (place, code, message, help) = wrong(&line);
+        assert_eq!((place, code), (line.clone(), Code::MISSING_ARGUMENT));
+        assert_eq!(message, "material `m` has no H, which hardening linear needs");
+        assert!(help.contains("`H = \"100 MPa\"`"), "{help}");
+        let line = "material m file steel.toml yield 400e6 hardening voce";
+        let (place, _, message, help) = wrong(line);
+        assert_eq!(place, "steel.toml");
+        assert_eq!(message, "material `m` (steel.toml) has no sigma_inf, which hardening voce needs");
+        assert!(help.contains("in steel.toml"), "{help}");
+        let (place, code, message, _) = wrong(&format!("{full} yield 400e6 H 1e8"));
+        assert_eq!((place.as_str(), code), ("1e8", Code::BAD_VALUE));
+        assert!(message.contains("does not use `H`"), "{message}");
+        assert_eq!(wrong(&format!("{full} yield 1 yield 2")).1, Code::CONFLICT);
+        assert_eq!(wrong(&format!("{full} yield -1")).0, "-1");
+        assert_eq!(wrong(&format!("{full} hardening vice")).0, "vice");
+        assert_eq!(wrong(&format!("{full} yield 1 elastic linear")).0, "elastic");
     }
 
     #[test]

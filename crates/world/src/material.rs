@@ -1,9 +1,12 @@
 //! A material as engineering data, and how its file is read.
 
-use serde::Deserialize;
-use toml::Spanned;
+mod record;
 
 use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span};
+use perigrain_constitutive::Elastic;
+use perigrain_constitutive::sheet::{Fault, Quantity, Sheet};
+use record::{DENSITY, ENERGY_PER_AREA, PRESSURE, Record, positive};
+use toml::Spanned;
 
 /// One material: in SI units when read from a file, in those of the deck once it is in the world.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -22,6 +25,8 @@ pub struct Material {
     pub alpha: f64,
     /// Tensile strength f_t, Pa in SI: where bonds that soften have their peak.
     pub tensile: Option<f64>,
+    /// Its elastic law, flow and damage.
+    pub sheet: Sheet,
     /// Where the numbers come from.
     pub source: String,
     /// When the record was last checked, `YYYY-MM-DD`.
@@ -37,31 +42,6 @@ pub enum Strength {
     Stretch(f64),
 }
 
-/// A material file as written: numbers with units are still text.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-#[expect(non_snake_case, reason = "the keys of the file, named as in the papers")]
-struct Record {
-    name: String,
-    source: String,
-    date: String,
-    E: Spanned<String>,
-    nu: Spanned<f64>,
-    rho: Spanned<String>,
-    Gc: Option<Spanned<String>>,
-    s00: Option<Spanned<f64>>,
-    alpha: Option<Spanned<f64>>,
-    ft: Option<Spanned<String>>,
-}
-
-/// Unit names of a quantity with what one of them is in SI.
-type Units = &'static [(&'static str, f64)];
-
-const PRESSURE: Units =
-    &[("Pa", 1.0), ("kPa", 1e3), ("MPa", 1e6), ("GPa", 1e9), ("N/m2", 1.0), ("N/mm2", 1e6), ("N/cm2", 1e4)];
-const DENSITY: Units = &[("kg/m3", 1.0), ("g/cm3", 1e3)];
-const ENERGY_PER_AREA: Units = &[("J/m2", 1.0), ("N/m", 1.0), ("N/mm", 1e3)];
-
 impl Material {
     /// Reads a material file; problems are underlined in `file`, the place where `text` was registered.
     pub fn parse(text: &str, file: FileId) -> Result<Material> {
@@ -76,7 +56,8 @@ impl Material {
                 Code::SYNTAX
             };
             Diagnostic::error(code, e.span().map(at), format!("material file: {message}")).help(
-                "a material file has name, source, date, E, nu, rho and may have Gc or s00, alpha and ft",
+                "a material file has name, source, date, E, nu, rho and may have Gc or s00, alpha and ft, and the keys of flow \
+                 and damage in potentials/README.md",
             )
         })?;
         let quantity = |q: &Spanned<String>, units| {
@@ -99,7 +80,9 @@ impl Material {
             (None, Some(s)) => Some(Strength::Stretch(*s.get_ref())),
             (None, None) => None,
         };
+        let sheet = r.sheet(file)?;
         let material = Material {
+            sheet,
             name: r.name,
             young: quantity(&r.E, PRESSURE)?,
             nu: *r.nu.get_ref(),
@@ -132,7 +115,21 @@ impl Material {
         if let Some(Strength::FractureEnergy(g)) = &mut self.strength {
             *g /= pressure * length;
         }
+        self.sheet.convert(|quantity| match quantity {
+            Quantity::Pressure => pressure.recip(),
+            Quantity::EnergyPerArea => (pressure * length).recip(),
+            Quantity::Rate => time,
+            Quantity::Temperature | Quantity::Angle | Quantity::Number => 1.0,
+        });
         self
+    }
+
+    /// The law of stress and strain that its data make.
+    ///
+    /// # Errors
+    /// A number is missing, is refused, or has no use in that law.
+    pub fn constitutive(&self) -> std::result::Result<perigrain_constitutive::Material, Fault> {
+        self.sheet.material(Elastic::from_young(self.young, self.nu))
     }
 
     /// The first number that no material can have: its key and what is wrong with it.
@@ -162,26 +159,12 @@ impl Material {
     }
 }
 
-/// The value of `"22.35 GPa"` in SI.
-fn positive(text: &str, units: Units) -> std::result::Result<f64, String> {
-    let known = || units.iter().map(|u| u.0).collect::<Vec<_>>().join(", ");
-    let Some((number, unit)) = text.trim().split_once(char::is_whitespace) else {
-        return Err(format!("`{text}` has no unit; known are {}", known()));
-    };
-    let Some((_, factor)) = units.iter().find(|u| u.0 == unit.trim()) else {
-        return Err(format!("unknown unit `{}`; known are {}", unit.trim(), known()));
-    };
-    match number.parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v * factor),
-        _ => Err(format!("`{number}` is not a positive number")),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::potentials;
     use perigrain_base::units::UnitSystem;
+    use perigrain_constitutive::sheet::Key;
 
     const MINIMAL: &str = "name='x'\nsource='y'\ndate='2026-01-01'\nE='2 GPa'\nnu=0.25\nrho='1.5 g/cm3'\n";
 
@@ -221,6 +204,39 @@ mod tests {
     }
 
     #[test]
+    fn flow_and_damage_in_deck_units() {
+        let text = format!(
+            "{MINIMAL}yield='90 MPa'\nhardening='johnson-cook'\nB='292 MPa'\nn=0.31\nC=0\nm=1.09\nrate0='1 1/s'\n\
+             Tr='298 K'\nTm='1356 K'\neps_f=0.3\nGf='20 kJ/m2'"
+        );
+        let m = parse(&text).unwrap();
+        let get = |m: &Material, key| m.sheet.get(key).unwrap();
+        assert_eq!([get(&m, Key::Yield), get(&m, Key::Gf), get(&m, Key::C)], [90e6, 20e3, 0.0]);
+        assert!(m.constitutive().is_ok());
+        // One micro unit of pressure is 1e3 Pa, of energy per area 1e-3 J/m², of time 1e-6 s.
+        let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-14;
+        assert!(near(get(&micro, Key::Yield), 90e3) && near(get(&micro, Key::Gf), 20e6));
+        assert!(near(get(&micro, Key::Rate0), 1e-6) && get(&micro, Key::Tm) == 1356.0);
+        let table = "hardening='table'\ntable=[[0.0, '90 MPa'], [0.1, '0.2 GPa']]";
+        assert_eq!(parse(&format!("{MINIMAL}{table}")).unwrap().sheet.table, [[0.0, 90e6], [0.1, 0.2e9]]);
+    }
+
+    #[test]
+    fn mistakes_in_flow_are_refused_where_they_stand() {
+        let refused = |text: &str| refused(&format!("{MINIMAL}{text}")).0;
+        assert_eq!(refused("yield=90.0"), "90.0");
+        assert_eq!(refused("yield='90 MPA'"), "'90 MPA'");
+        assert_eq!(refused("yield='-90 MPa'"), "'-90 MPa'");
+        assert_eq!(refused("n='0.3 m'"), "'0.3 m'");
+        assert_eq!(refused("hardening='vice'"), "'vice'");
+        assert_eq!(refused("elastic='rubber'"), "'rubber'");
+        assert_eq!(refused("phi=90.0"), "90.0");
+        assert_eq!(refused("table=[[0.1, '90 MPa']]"), "[[0.1, '90 MPa']]");
+        assert_eq!(refused("table=[[0.0, '90 K']]"), "[[0.0, '90 K']]");
+    }
+
+    #[test]
     fn unknown_keys_are_refused_where_they_stand() {
         let (word, message) = refused(&format!("{MINIMAL}G_c = '8 J/m2'\n"));
         assert_eq!(word, "G_c");
@@ -251,6 +267,7 @@ mod tests {
         for (name, text) in potentials::EMBEDDED {
             let m = parse(text).unwrap_or_else(|d| panic!("{name}: {d}"));
             assert!(!m.source.trim().is_empty() && m.date.len() == 10, "{name}");
+            m.constitutive().unwrap_or_else(|fault| panic!("{name}: {fault:?}"));
         }
     }
 

@@ -9,7 +9,8 @@ macro_rules! embed {
 /// Name and text of every file in `potentials/`.
 pub const EMBEDDED: &[(&str, &str)] = embed! {
     "alumina.toml" "brittle-plate.toml" "impactor-steel.toml" "laminate-impactor.toml" "laminate-ply-1.toml"
-    "laminate-ply-2.toml" "laminate-ply-3.toml" "laminate-ply-4.toml" "soda-lime-glass.toml" "steel.toml"
+    "laminate-ply-2.toml" "laminate-ply-3.toml" "laminate-ply-4.toml" "ofhc-copper.toml" "soda-lime-glass.toml"
+    "steel-4340.toml" "steel.toml"
 };
 
 /// The embedded text of this name.

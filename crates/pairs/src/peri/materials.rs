@@ -311,6 +311,9 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         let text = format!("this style needs `{key}` beside the material");
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
+    if let Some(warning) = without_flow(m, &id.text, id.span) {
+        cx.note(warning);
+    }
     if law.softens() {
         softens(&mut s, id.span, &id.text)?;
     }
@@ -365,6 +368,16 @@ fn spacing(at: Span, cx: &BuildCx) -> Result<f64> {
     Err(Diagnostic::error(Code::CONFLICT, at, "a horizon in lattice spacings needs a cubic lattice")
         .help("use `lattice sc SPACING`, or give c, horizon, s00 and alpha as numbers")
         .into())
+}
+
+/// The warning that laws of bonds use nothing of a material's elastic law, flow and damage.
+fn without_flow(m: &Material, id: &str, at: Span) -> Option<Diagnostic> {
+    let idle = m.sheet.given();
+    if idle.is_empty() {
+        return None;
+    }
+    let text = format!("bonds do not use {} of material `{id}`", idle.join(", "));
+    Some(Diagnostic::warning(Code::MATERIAL, at, text).help("`pair_style peri/cauchy` does"))
 }
 
 /// The warning that bonds fix Poisson's ratio.
