@@ -27,7 +27,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("lang", &["base"]),
     ("mesh", &["base"]),
     ("neigh", &["base"]),
-    ("peri", &["base"]),
+    ("peri", &["base", "constitutive"]),
     ("world", &["base", "constitutive", "mesh", "peri"]),
     ("contact", &["base", "neigh", "peri", "world"]),
     ("plan", &["base", "statics", "world"]),

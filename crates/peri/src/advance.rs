@@ -73,6 +73,9 @@ impl Families {
             self.damaged[j as usize] = true;
             self.add_broken(view, (i, j), broken.square);
         }
+        if kind.correspondence {
+            self.reshape(view, &ends);
+        }
         (self.scratch.broken, self.scratch.candidates, self.scratch.ends) = (broken, bonds, ends);
     }
 

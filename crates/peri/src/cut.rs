@@ -50,6 +50,9 @@ impl Families {
         for p in ends.iter().flatten() {
             self.damaged[*p as usize] = true;
         }
+        if kind.correspondence {
+            self.reshape(view, &ends);
+        }
         if !ends.is_empty() {
             self.forget_near();
         }

@@ -1,5 +1,6 @@
 //! Energy and virial of all bonds: asked for at some steps only, so a pass of its own.
 
+use crate::cauchy;
 use crate::families::lattice::{LANES, LatticeBody, PAD};
 use crate::families::shares::Shares;
 use crate::families::view::Sums;
@@ -28,6 +29,9 @@ pub fn tally(
     t: &mut PeriTally,
     (advanced, cell, shares): (bool, &Cell, Option<&Shares>),
 ) {
+    if families.law.kind.correspondence {
+        return cauchy::energy::tally(families, view, cell, t);
+    }
     let newton = families.options.unit == ForceUnit::Newton;
     let scale = |p: usize| if newton { view.volume[p] } else { 1.0 };
     let dilated = !families.law.kind.bond_based;

@@ -67,6 +67,9 @@ impl Families {
         if families.law.kind.has_states() {
             families.weigh(view, &families.cell_before());
         }
+        if families.law.kind.correspondence {
+            families.begin_correspondence(view);
+        }
         stop::check()?;
         let reaches = table.iter().map(|c| options.volume.reach(c.horizon, options.lattice_spacing));
         let finest = families.spacing.iter().copied().reduce(f64::min).unwrap_or(1.0);
@@ -240,6 +243,7 @@ impl Families {
             tables::refresh(body, view, table, &self.options, &self.law);
         }
         list::refresh(&mut self.list, view, table, &self.options, (&self.law, &self.of_bonds), &cell);
+        self.continua().for_each(|(own, _)| own.inverse.clear());
     }
 
     /// Takes in particles created since: they have no family, but short-range contact.
@@ -277,7 +281,7 @@ impl Families {
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
         // The energies of dilatations are added up one site after the other.
         let rows = !tallied || self.law.kind.bond_based;
-        self.shares.is_some() && advance && rows && !self.counts_losses
+        !self.law.kind.correspondence && self.shares.is_some() && advance && rows && !self.counts_losses
     }
 
     /// Which kernels serve on this processor.
@@ -296,6 +300,9 @@ impl Families {
         self.particles_joined(view);
         let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
+        if self.law.kind.correspondence {
+            self.find_shapes(view);
+        }
         if self.before != Edges::from(periods(&view.bounds)) {
             // Images have come nearer to each other.
             self.forget_near();

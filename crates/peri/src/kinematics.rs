@@ -37,7 +37,18 @@ impl Families {
 
 /// Families whose shape tensor has less than this share of the least eigenvalue of the whole family's are torn: F then is what a few
 /// bonds about a hinge say.
-const HINGE: f64 = 0.05;
+pub(crate) const HINGE: f64 = 0.05;
+
+/// Shape tensors of a family.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shapes {
+    /// Of the bonds that live.
+    pub(crate) left: Tensor,
+    /// Of all bonds.
+    pub(crate) whole: Tensor,
+    /// Whether any is broken.
+    pub(crate) broken: bool,
+}
 
 impl Families {
     /// Whether so much of a particle's family is broken that what is left is a mechanism: more than `most` of its volume, or in some
@@ -46,7 +57,15 @@ impl Families {
         if !self.damaged.get(i).copied().unwrap_or(false) {
             return false;
         }
-        let (mut left, mut whole, mut broken) = ([[0.0; 3]; 3], [[0.0; 3]; 3], false);
+        let Shapes { left, whole, broken } = self.shapes(view, i);
+        broken
+            && (self.damage(i, view.volume) > most
+                || least_eigenvalue(&left) < HINGE * least_eigenvalue(&whole))
+    }
+
+    /// The shape tensors of a particle's family.
+    pub(crate) fn shapes(&self, view: &PeriView, i: usize) -> Shapes {
+        let Shapes { mut left, mut whole, mut broken } = Shapes::default();
         self.each(i, |n| {
             let j = n.partner as usize;
             let Some(pair) = self.table.get(view.kind[i], view.kind[j]) else { return };
@@ -61,14 +80,12 @@ impl Families {
                 left[a][b] += if n.alive { term } else { 0.0 };
             }
         });
-        broken
-            && (self.damage(i, view.volume) > most
-                || least_eigenvalue(&left) < HINGE * least_eigenvalue(&whole))
+        Shapes { left, whole, broken }
     }
 }
 
 /// The least eigenvalue of a symmetric tensor (Smith, Comm. ACM 4 (1961) 168).
-fn least_eigenvalue(t: &Tensor) -> f64 {
+pub(crate) fn least_eigenvalue(t: &Tensor) -> f64 {
     let mean = (t[0][0] + t[1][1] + t[2][2]) / 3.0;
     let off = t[0][1] * t[0][1] + t[0][2] * t[0][2] + t[1][2] * t[1][2];
     let square = (0..3).map(|k| (t[k][k] - mean).powi(2)).sum::<f64>() + 2.0 * off;
@@ -82,7 +99,7 @@ fn least_eigenvalue(t: &Tensor) -> f64 {
 }
 
 /// The inverse of a tensor whose eigenvalues are not negative; `None` if one of them vanishes.
-fn inverse(t: &Tensor) -> Option<Tensor> {
+pub(crate) fn inverse(t: &Tensor) -> Option<Tensor> {
     let mean = (t[0][0] + t[1][1] + t[2][2]) / 3.0;
     let whole = determinant(t);
     if whole.is_nan() || whole <= FLAT * mean.powi(3) {

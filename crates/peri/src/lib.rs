@@ -9,6 +9,7 @@
 mod advance;
 mod breaking;
 pub mod calibration;
+mod cauchy;
 mod contact;
 mod cut;
 pub mod damage;

@@ -7,6 +7,9 @@ use crate::law::freed::Freed;
 use crate::law::state::SiteState;
 use crate::law::style::Losses;
 
+/// K⁻¹ of all sites of a body.
+type Shape = Vec<[f64; 6]>;
+
 impl Families {
     /// Breaks bonds; where that is counted, adds the difference of the energies of all bonds before and after. The force of a broken bond
     /// has been computed and acts in the first half of the next step still: it takes what the bond would have gained in that time, half
@@ -18,15 +21,16 @@ impl Families {
         let mut alive: Vec<Vec<u8>> = self.lattices.iter().map(|b| b.alive.clone()).collect();
         let mut listed = self.list.alive.clone();
         let mut freed: Vec<Freed> = self.states().map(|s| s.freed.clone()).collect();
+        let mut shapes: Vec<Shape> = self.states().map(|s| s.continuum.inverse.clone()).collect();
         self.break_bonds(view, cell, None);
         if self.scratch.ends.is_empty() {
             return;
         }
         let mut fall = |bonds: &mut Self| {
             let after = bonds.living_energy(view, cell);
-            bonds.exchange(&mut alive, &mut listed, &mut freed);
+            bonds.exchange((&mut alive, &mut listed), &mut freed, &mut shapes);
             let before = bonds.living_energy(view, cell);
-            bonds.exchange(&mut alive, &mut listed, &mut freed);
+            bonds.exchange((&mut alive, &mut listed), &mut freed, &mut shapes);
             before - after
         };
         self.swap_places();
@@ -57,6 +61,12 @@ impl Families {
         match self.law.kind.losses {
             _ if self.options.compat_lammps => {}
             Losses::None => {}
+            Losses::Sites => {
+                let lost = self.states().flat_map(|state| std::mem::take(&mut state.continuum.lost));
+                let [heat, released] = lost.fold([0.0; 2], |sum, lost| [sum[0] + lost[0], sum[1] + lost[1]]);
+                self.heat += heat;
+                self.released += released;
+            }
             Losses::Flow => {
                 if !self.flowed() {
                     return self.forget_earlier();
@@ -153,9 +163,15 @@ impl Families {
         lattices + of(&self.list.particle, &self.list.state, 0)
     }
 
-    fn exchange(&mut self, alive: &mut [Vec<u8>], listed: &mut Vec<u8>, freed: &mut [Freed]) {
-        for (state, freed) in self.states().zip(freed) {
+    fn exchange(
+        &mut self,
+        (alive, listed): (&mut [Vec<u8>], &mut Vec<u8>),
+        freed: &mut [Freed],
+        shapes: &mut [Shape],
+    ) {
+        for ((state, freed), shape) in self.states().zip(freed).zip(shapes) {
             std::mem::swap(&mut state.freed, freed);
+            std::mem::swap(&mut state.continuum.inverse, shape);
         }
         for (body, bits) in self.lattices.iter_mut().zip(alive) {
             std::mem::swap(&mut body.alive, bits);

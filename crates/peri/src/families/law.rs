@@ -1,7 +1,9 @@
 //! The law of all families of a scene: which, with the moduli of types.
 
+use crate::cauchy::site::Rules;
 use crate::families::options::FamilyOptions;
 use crate::families::table::PmbTable;
+use crate::families::view::PeriView;
 use crate::law::material::{Influence, Moduli};
 use crate::law::moment::{Held, Moment};
 use crate::law::settle::Settling;
@@ -9,6 +11,7 @@ use crate::law::site::Stiffness;
 use crate::law::table::{LawKind, SHAPED};
 use crate::list::kernel::Counting;
 use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_constitutive::Material;
 
 /// The law of all families of a scene.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -19,6 +22,10 @@ pub struct Law {
     pub influence: Influence,
     /// Moduli by type − 1.
     pub moduli: Vec<Moduli>,
+    /// What sites of each type − 1 are made of, under correspondence.
+    pub materials: Vec<Option<Material>>,
+    /// How stiff what no deformation gradient says of bonds is, over 15G/m: g of node control.
+    pub control: f64,
     /// Stretches below which bonds flow or beyond which they soften, by pair of types (row by row); empty where none do.
     pub yields: Vec<f64>,
     /// Bonds that are shaped are stiffer near surfaces (`peri_modify surface energy`).
@@ -145,6 +152,11 @@ impl Law {
             tallied,
             counted: counts && keep,
         }
+    }
+
+    /// What settles sites under correspondence.
+    pub(crate) fn rules<'a>(&'a self, view: &PeriView<'a>) -> Rules<'a> {
+        Rules { materials: &self.materials, control: self.control, dt: self.dt, volume: view.volume }
     }
 
     /// The moduli of a type.

@@ -53,17 +53,17 @@ macro_rules! xyz {
 #[derive(Clone, Copy)]
 pub struct Chunk<'a> {
     /// Displacements.
-    pub(super) u: [*const f64; 3],
+    pub(crate) u: [*const f64; 3],
     /// Forces, added to.
-    pub(super) f: [*mut f64; 3],
+    pub(crate) f: [*mut f64; 3],
     /// Alive bits of the chunk, one byte per stencil vector.
-    pub(super) alive: &'a [u8],
+    pub(crate) alive: &'a [u8],
     /// Where the bonds lead.
-    pub(super) to: &'a [Lead],
+    pub(crate) to: &'a [Lead],
     /// Constants.
-    pub(super) tables: &'a [f64],
+    pub(crate) tables: &'a [f64],
     /// Per-cell data of bodies with mixed rows or various volumes.
-    pub(super) various: Option<Various<'a>>,
+    pub(crate) various: Option<Various<'a>>,
 }
 
 impl<'a> Chunk<'a> {

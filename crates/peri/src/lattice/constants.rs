@@ -1,5 +1,6 @@
 //! What the kernels of lattices look up: constants of bonds, weighted volumes of families.
 
+use crate::cauchy::lattice::TERM;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, PAD};
 use crate::families::list::ListBody;
 use crate::families::{Cell, FamilyOptions, ForceUnit, Law, PeriView, PmbTable};
@@ -57,6 +58,9 @@ pub fn fill(
             series(&mut row, &STRETCH, term, term);
             row[FROM_TERM] = if term == 0.0 { 0.0 } else { 1.0 / term };
             row[TWICE_XI..TWICE_XI + 3].copy_from_slice(&xi.map(|x| 2.0 * x));
+            if law.kind.correspondence {
+                row[TERM..TERM + 3].copy_from_slice(&xi.map(|x| share * volume * x));
+            }
             body.state.tables.extend_from_slice(&row);
         }
     }

@@ -22,9 +22,9 @@ pub const TWICE_XI: usize = constant::XI;
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     /// The first column; the others follow a stride apart.
-    columns: *const f64,
+    pub(crate) columns: *const f64,
     /// See `columns`.
-    stride: usize,
+    pub(crate) stride: usize,
     /// Displacements at the last step that advanced.
     pub(super) last: [*const f64; 3],
     /// What the chunk's bonds remember, [`CELLS`] of each number for each stencil vector.

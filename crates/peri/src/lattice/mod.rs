@@ -15,6 +15,7 @@ pub mod sweep;
 pub mod tables;
 pub(crate) mod tiles;
 
+use crate::cauchy;
 use crate::families::lattice::{LatticeBody, PAD};
 use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
@@ -109,13 +110,14 @@ fn lattice_body(
     (mode, options): (Mode, &FamilyOptions),
     (law, settling, mut share): (&Law, &Settling, Option<&mut BodyShare>),
 ) {
+    let known = law;
     let (law, loops) = (law.kind.style(), law.kind.loops(settling.compat));
     let spreads = law.spreads();
     if spreads {
-        find_active(body, law.memory() > 0, share.as_deref());
+        find_active(body, law.memory() > 0 || law.correspondence, share.as_deref());
     }
     if loops.about().columns > 0 {
-        body.state.columns.resize(COLUMNS * body.stride, 0.0);
+        body.state.columns.resize(COLUMNS.max(loops.about().columns) * body.stride, 0.0);
     }
     let mut columns = ChunkColumns::take(body);
     let mut windows = std::mem::take(&mut body.tiles.windows);
@@ -143,6 +145,16 @@ fn lattice_body(
     let (stride, kinds) = (body.stride, view.kind);
     let sites =
         Sites { count, pad: PAD, stride, particle: &particle, kind: kinds, only, stiffness: &stiffness };
+    if law.correspondence {
+        let mut sums = std::mem::take(&mut body.state.sums);
+        sums.clear();
+        sums.resize(9 * body.stride, 0.0);
+        let sweep = Sweep::new(body, &mut columns, mode, newton, states);
+        cauchy::lattice::add_gradients(&sweep, (&tiles, &mut windows), &mut sums);
+        body.state.sums = sums;
+        let places = cauchy::site::Places::columns(body.stride);
+        cauchy::site::settle(settling, &mut body.state, &sites, places, &known.rules(view));
+    }
     let mut add_up = |body: &mut LatticeBody, sum, states, mut share: Option<&mut BodyShare>| {
         let mut sums = std::mem::take(&mut body.state.sums);
         sums.clear();
@@ -159,7 +171,7 @@ fn lattice_body(
         }
         body.state.sums = sums;
     };
-    if !law.bond_based {
+    if !law.bond_based && !law.correspondence {
         add_up(body, Sum::Dilatation, states, share.as_deref_mut());
         loops.dilatations(settling, &mut body.state, &sites);
     }

@@ -104,6 +104,23 @@ pub(crate) fn sums(body: &LatticeBody, (tiles, tile): (&Tiles, usize), windows: 
     });
 }
 
+/// The same for several columns of sums, each so many entries behind the one before.
+pub(crate) fn columns<const N: usize>(
+    body: &LatticeBody,
+    (tiles, tile): (&Tiles, usize),
+    windows: Windows,
+    (sums, stride): (&Shared<f64>, usize),
+) {
+    by_planes::<N>(body, (tiles, tile), &windows, |_, owed| {
+        for (part, k) in owed.iter().flat_map(|part| (0..N).map(move |k| (part, k))) {
+            let first = k * stride + PAD;
+            // SAFETY: a tile's cells are its own.
+            let sums = unsafe { sums.get(first + part.cells[0]..first + part.cells[1]) };
+            sums.iter_mut().zip(part.sums[k]).for_each(|(sum, more)| *sum += more);
+        }
+    });
+}
+
 /// Forces for the particles of some cells.
 struct HandBack<'a, 'b> {
     /// First and past the last cell.

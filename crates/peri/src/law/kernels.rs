@@ -22,6 +22,8 @@ pub(crate) struct About {
     pub(crate) columns: usize,
     pub(crate) memory: usize,
     pub(crate) plain: bool,
+    /// Displacements are needed apart from reference bonds.
+    pub(crate) apart: bool,
     pub(crate) back: bool,
     pub(crate) limited: bool,
     pub(crate) lazy: bool,
@@ -87,6 +89,7 @@ impl<W: BondLaw> Loops for Of<W> {
             columns: W::COLUMNS,
             memory: W::MEMORY,
             plain: W::PLAIN,
+            apart: false,
             back: W::BACK,
             limited: W::LIMITED,
             lazy: W::LAZY,

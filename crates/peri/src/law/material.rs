@@ -78,6 +78,30 @@ impl Moduli {
     }
 }
 
+impl Moduli {
+    /// K + 4G/3, of which ρc² of longitudinal waves is [pressure].
+    fn longitudinal(&self) -> f64 {
+        self.bulk + 4.0 / 3.0 * self.shear
+    }
+
+    /// Steps of this length times √ρ are stable for a body under correspondence of points about so far apart, whatever its shape and horizon
+    /// [length/√pressure]: where a family is two layers thick its gradient is that of two neighbours.
+    pub fn thin_step(&self, spacing: f64) -> f64 {
+        THIN * spacing / self.longitudinal().sqrt()
+    }
+
+    /// The same for bodies that are thicker than their horizon is long, points on a lattice or a little off it.
+    pub fn thick_step(&self, horizon: f64) -> f64 {
+        THICK * horizon / self.longitudinal().sqrt()
+    }
+}
+
+/// See [`Moduli::thin_step`]; `tests/families/cauchy.rs` has the limits.
+const THIN: f64 = 0.6;
+
+/// See [`Moduli::thick_step`].
+const THICK: f64 = 0.48;
+
 /// See [`Moduli::fastest`].
 const FASTEST: [f64; 2] = [11.4, 19.6];
 

@@ -3,6 +3,7 @@
 //! A law is a type with [`BondLaw`], a formula that is written once for single bonds and for lanes of them, and a [`Style`]: what
 //! it is like, the numbers that decks give it, its kernels. Scenes choose it by the [table].
 
+mod cauchy;
 mod eps;
 pub mod formula;
 pub mod freed;
@@ -32,7 +33,7 @@ pub use moment::{COLUMNS, Held, Moment};
 pub use stretch::{Ends, Stretch, closed};
 pub use style::Style;
 pub use table::{
-    EPS, EXPONENTIAL, LAWS, LINEAR, LPS, LawKind, NONLINEAR, PLASTIC, PMB, SHAPED, VES, VES_APART,
+    CAUCHY, EPS, EXPONENTIAL, LAWS, LINEAR, LPS, LawKind, NONLINEAR, PLASTIC, PMB, SHAPED, VES, VES_APART,
 };
 
 #[cfg(test)]

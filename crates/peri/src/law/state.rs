@@ -1,5 +1,6 @@
 //! What the sites of a body carry under a law, and what its bonds remember.
 
+use crate::cauchy::Continuum;
 use crate::law::freed::Freed;
 use crate::law::moment::Held;
 
@@ -21,6 +22,8 @@ pub struct SiteState {
     pub plastic: Vec<f64>,
     /// What broken bonds have left; nothing under LAMMPS' laws.
     pub freed: Freed,
+    /// What sites have under correspondence; nothing under other laws.
+    pub continuum: Continuum,
     /// Numbers that each bond remembers; the layout knows the order.
     pub memory: Vec<f64>,
     /// The form of that under the viscous law.
@@ -73,5 +76,6 @@ impl SiteState {
             + self.active.len()
             + self.awake.len())
             + self.touched.len()
+            + self.continuum.bytes()
     }
 }

@@ -16,6 +16,8 @@ pub struct Style {
     pub bond_based: bool,
     /// Whether each end of a bond that is bond-based has a stiffness of its own, which sites have as column 1.
     pub stiffened: bool,
+    /// Whether forces follow from deformation gradients of sites and the stress of their materials.
+    pub correspondence: bool,
     /// What bonds lose for good while they live.
     pub losses: Losses,
     /// What a line of a deck has besides a stiffness and the words that all laws have.
@@ -47,6 +49,8 @@ pub enum Losses {
     Flow,
     /// Damage takes fracture energy.
     Damage,
+    /// The materials of sites say what flow and damage take.
+    Sites,
     /// Dashpots make heat, those of all bonds alike.
     Relaxation,
     /// The same where each end has its own.
@@ -108,6 +112,11 @@ impl Kernels {
         Self(Of::<W>::LOOPS)
     }
 
+    /// These loops.
+    pub(crate) const fn with(loops: &'static dyn Loops) -> Self {
+        Self(loops)
+    }
+
     /// The loops.
     pub(crate) fn loops(self) -> &'static dyn Loops {
         self.0
@@ -128,6 +137,7 @@ impl Style {
             number,
             bond_based: false,
             stiffened: false,
+            correspondence: false,
             losses: Losses::None,
             numbers: &[],
             edge: None,
@@ -163,7 +173,7 @@ impl Style {
 
     /// Whether the extension of a broken bond is set free, under LAMMPS' laws (`compat`) or not.
     pub fn frees(&self, compat: bool) -> bool {
-        !self.bond_based && !compat
+        !self.bond_based && !self.correspondence && !compat
     }
 
     /// Whether bonds lose energy for good at once, not in the course of time.

@@ -1,7 +1,7 @@
 //! The laws of bonds: one file and one line each.
 
 use crate::law::style::Style;
-use crate::law::{eps, lps, nonlinear, plastic, pmb, shaped, softening, ves};
+use crate::law::{cauchy, eps, lps, nonlinear, plastic, pmb, shaped, softening, ves};
 use std::ops::Deref;
 
 /// Which law the bonds of a scene have; in restart files its number.
@@ -28,6 +28,7 @@ bond_laws! {
     ves::VES;
     ves::VES_APART;
     eps::EPS;
+    cauchy::CAUCHY;
 }
 
 impl LawKind {
@@ -99,7 +100,7 @@ mod tests {
     #[test]
     fn numbers_and_names_are_of_one_law_each() {
         let known = ["pmb", "lps", "ves", "eps", "plastic", "nonlinear", "shaped", "ves/apart"];
-        let known = known.into_iter().chain(["softening/linear", "softening/exponential"]);
+        let known = known.into_iter().chain(["softening/linear", "softening/exponential", "cauchy"]);
         for (number, name) in known.enumerate() {
             assert_eq!(LawKind::named(name).map(|law| law.number as usize), Some(number));
         }

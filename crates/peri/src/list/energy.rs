@@ -37,7 +37,7 @@ pub fn tally(
     let (kind, loops) = (law.kind.style(), law.kind.loops(options.compat_lammps));
     let rules = Rules::new(cell, options, law.counting());
     let list = &families.list;
-    let ends = in_rows(&list.state, n, loops.about().columns);
+    let ends = in_rows(&list.state.columns, n, loops.about().columns);
     let angles = if kind.bond_based { vec![] } else { angles(list) };
     let now = Moment { held: list.state.held, ..law.moment(false) };
     // Nothing is written: `keep` is not set.

@@ -33,6 +33,8 @@ pub const LAST: u8 = 0;
 pub const PLAIN: u8 = 1;
 /// Everything.
 pub const FULL: u8 = 2;
+/// What it takes to pull microelastic bonds, and displacements apart from reference bonds.
+pub const APART: u8 = 3;
 
 /// So many bonds are in hand at once.
 pub const MOST: usize = 64;
@@ -74,6 +76,8 @@ pub struct Block {
     pub high: f64,
     /// The smallest z, or 0.
     pub low: f64,
+    /// eta, the difference of displacements.
+    pub eta: [[f64; MOST]; 3],
 }
 
 impl Block {
@@ -98,6 +102,7 @@ impl Block {
             count: 0,
             high: 0.0,
             low: 0.0,
+            eta: [none; 3],
         }
     }
 }
@@ -453,6 +458,13 @@ impl<const IMAGES: u8, const WHAT: u8> InLanes for Shapes<'_, '_, IMAGES, WHAT> 
                     y[2].write(b.y[2].as_mut_ptr().add(at));
                     weight.keep(alive).write(b.weight.as_mut_ptr().add(at));
                     volume.write(b.volume.as_mut_ptr().add(at));
+                    if WHAT == APART {
+                        let mut d = 0;
+                        while d < 3 {
+                            eta[d].write(b.eta[d].as_mut_ptr().add(at));
+                            d += 1;
+                        }
+                    }
                     if WHAT == FULL {
                         square.write(b.square.as_mut_ptr().add(at));
                         omega.keep(alive).write(b.omega.as_mut_ptr().add(at));

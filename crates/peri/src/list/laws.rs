@@ -115,12 +115,12 @@ fn stretched<const N: usize, V: Lanes<N>>(
 
 /// Sums of eight lanes, in the same order whatever their width.
 #[derive(Clone, Copy)]
-struct Sum<V>([V; 2]);
+pub(crate) struct Sum<V>(pub(crate) [V; 2]);
 
 impl<V> Sum<V> {
     /// Adds `a b` of the bonds at a place.
     #[inline(always)]
-    fn add<const N: usize>(&mut self, at: usize, a: V, b: V)
+    pub(crate) fn add<const N: usize>(&mut self, at: usize, a: V, b: V)
     where
         V: Lanes<N>,
     {
@@ -128,8 +128,9 @@ impl<V> Sum<V> {
         self.0[half] = a.fma(b, self.0[half]);
     }
 
+    /// The sum of all lanes.
     #[inline(always)]
-    fn total<const N: usize>(&self) -> f64
+    pub(crate) fn total<const N: usize>(&self) -> f64
     where
         V: Lanes<N>,
     {
@@ -145,10 +146,10 @@ impl<V> Sum<V> {
 
 /// Bonds in hand, with what laws need of them.
 pub struct Hand<'a, 'b, 'c> {
-    row: &'a Row<'b>,
-    acting: &'a Acting<'c>,
-    block: &'a mut Block,
-    window: *mut f64,
+    pub(crate) row: &'a Row<'b>,
+    pub(crate) acting: &'a Acting<'c>,
+    pub(crate) block: &'a mut Block,
+    pub(crate) window: *mut f64,
 }
 
 impl<'a, 'b, 'c> Hand<'a, 'b, 'c> {

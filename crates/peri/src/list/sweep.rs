@@ -3,6 +3,8 @@
 //! Slabs, groups, partners and lengths of columns are as `setup::list` makes them; of lists from restart files `families::sound` has
 //! looked at each of them.
 
+use crate::cauchy::list::add_gradients;
+use crate::cauchy::site::{Places, ROW, settle};
 use crate::families::list::{ListBody, Record};
 use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
@@ -13,10 +15,9 @@ use crate::law::kernels::Loops;
 use crate::law::moment::COLUMNS;
 use crate::law::moment::Moment;
 use crate::law::settle::{Settling, Sites, stiffen};
-use crate::law::state::SiteState;
 use crate::law::terms::{Dilatation, Norm, NormLammps, Sum, Term};
 use crate::list::breaking::{FORCE_AND_MEASURE, Judge, add_rows};
-use crate::list::kernel::{Block, FULL, LAST, PLAIN, Row, Rules};
+use crate::list::kernel::{APART, Block, FULL, LAST, PLAIN, Row, Rules};
 use crate::list::laws::{Acting, Hand, add_up};
 use crate::list::tiles::{self, lay_slabs};
 use crate::shares::dues::share_sums;
@@ -51,12 +52,14 @@ pub fn forces(
         list.limits.next.clear();
         list.limits.next.resize(if judge.keeps { n } else { 0 }, f64::INFINITY);
     }
-    let awake = kind.has_states().then(|| find_active(list, kind.memory() > 0));
+    let remembers = kind.memory() > 0 || kind.correspondence;
+    let awake = kind.has_states().then(|| find_active(list, remembers));
     let moving = std::mem::take(&mut list.moving);
     let active = awake.as_deref().unwrap_or(&moving);
     let now = Moment { held: list.state.held, ..settling.moment };
     if kind.has_states() {
-        list.state.columns.resize(COLUMNS * n, 0.0);
+        let numbers = if kind.correspondence { ROW } else { COLUMNS };
+        list.state.columns.resize(numbers * n, 0.0);
         keep_earlier(&mut list.state, kind, settling);
         if kind.memory() > 0 && list.state.touched.len() != n {
             list.state.touched = vec![1; n];
@@ -75,6 +78,16 @@ pub fn forces(
         stiffness: &stiffness,
     };
     let mut sweep = |list: &mut ListBody, numbers: usize, act: &Act| {
+        let columns = std::mem::take(&mut list.state.columns);
+        let rows;
+        // Under correspondence numbers of sites are rows already.
+        let ends = match kind.correspondence {
+            true => &columns,
+            false => {
+                rows = in_rows(&columns, n, numbers);
+                &rows
+            }
+        };
         let mut memory = std::mem::take(&mut list.state.memory);
         let mut touched = std::mem::take(&mut list.state.touched);
         let mut lowest = std::mem::take(&mut list.lowest);
@@ -84,7 +97,7 @@ pub fn forces(
         let mut windows = std::mem::take(&mut list.tiles.windows);
         let sweep = Sweep {
             body: list,
-            ends: &in_rows(&list.state, n, numbers),
+            ends,
             lowest: Shared::new(&mut lowest),
             strained: Shared::new(&mut strained),
             next: Shared::new(&mut next),
@@ -101,13 +114,18 @@ pub fn forces(
         list.lowest = lowest;
         (list.limits.strained, list.limits.next) = (strained, next);
         list.tiles.windows = windows;
+        list.state.columns = columns;
     };
-    let clear_sums = |list: &mut ListBody| {
+    let clear_sums = |list: &mut ListBody, numbers: usize| {
         list.state.sums.clear();
-        list.state.sums.resize(n, 0.0);
+        list.state.sums.resize(numbers * n, 0.0);
     };
-    if !kind.bond_based {
-        clear_sums(list);
+    if kind.correspondence {
+        clear_sums(list, ROW);
+        sweep(list, 0, &|s, w, _| s.add_gradients(&moving, w));
+        settle(settling, &mut list.state, &sites, Places::RECORDS, &law.rules(view));
+    } else if !kind.bond_based {
+        clear_sums(list, 1);
         sweep(list, 0, &|s, w, share| s.add_up::<Dilatation>(&moving, w, share));
         loops.dilatations(settling, &mut list.state, &sites);
     }
@@ -115,7 +133,7 @@ pub fn forces(
         stiffen(settling, &mut list.state, &sites);
     }
     if let Some(norm) = loops.about().norm {
-        clear_sums(list);
+        clear_sums(list, 1);
         sweep(list, Norm::COLUMNS, &|s, w, share| match norm {
             Sum::Dilatation => s.add_up::<Dilatation>(active, w, share),
             Sum::Norm => s.add_up::<Norm>(active, w, share),
@@ -137,7 +155,7 @@ fn only(list: &ListBody) -> Option<u16> {
 }
 
 /// Columns of sites as rows: so many numbers for each of `n` records.
-pub fn in_rows(state: &SiteState, n: usize, numbers: usize) -> Vec<f64> {
+pub fn in_rows(columns: &[f64], n: usize, numbers: usize) -> Vec<f64> {
     let stride = Acting::stride(numbers);
     let mut rows = vec![0.0; stride * n];
     let shared = Shared::new(&mut rows);
@@ -145,7 +163,7 @@ pub fn in_rows(state: &SiteState, n: usize, numbers: usize) -> Vec<f64> {
         // SAFETY: each record's row is one task's.
         let rows = unsafe { shared.get(stride * range.start..stride * range.end) };
         for k in 0..numbers {
-            let column = &state.columns[k * n..][range.clone()];
+            let column = &columns[k * n..][range.clone()];
             rows.chunks_exact_mut(stride).zip(column).for_each(|(row, value)| row[k] = *value);
         }
     });
@@ -244,6 +262,37 @@ impl Sweep<'_> {
         true
     }
 
+    /// Adds eta⊗xi of all bonds to the sums of both ends, [`ROW`] numbers for each record.
+    fn add_gradients(&self, active: &[bool], windows: &mut [TileWindow]) {
+        let add =
+            |sum: &mut [f64; ROW], more: &[f64; ROW]| sum.iter_mut().zip(more).for_each(|(s, m)| *s += m);
+        let act = |slab: usize, window: &mut TileWindow| {
+            if self.rests(slab, active) && self.mode.skip {
+                return false;
+            }
+            let (body, form) = (self.body, self.mode.form);
+            let sums = tiles::open(body, slab, window, [0.0; ROW]);
+            let b = &mut Block::new();
+            for i in body.records(slab) {
+                let row = Row { body, i, first: body.ring_start(slab), rules: self.rules };
+                let acting = self.acting(false);
+                let mut next = row.start();
+                while row.fill(&mut next, b) {
+                    row.shape::<APART>(form, b);
+                    // SAFETY: bonds lead to records that the window covers, and a record belongs to one slab.
+                    let hand = unsafe { Hand::new((&row, &acting), b, sums) };
+                    add_gradients(form, hand);
+                }
+            }
+            true
+        };
+        tiles::sweep(self.body, (windows, false, None), act, ([0.0; ROW], add), |records, sums| {
+            // SAFETY: each record settles once.
+            let own = unsafe { self.sums.get(ROW * records.start..ROW * records.end) };
+            own.copy_from_slice(sums.as_flattened());
+        });
+    }
+
     /// Takes the numbers of records that this rank's bonds lead to from the ranks that have them.
     fn share(&self, share: Option<&mut BodyShare>, numbers: &Shared<f64>) {
         if let Some(share) = share {
@@ -315,9 +364,10 @@ impl Sweep<'_> {
                 if about.back {
                     row.shape::<LAST>(form, b);
                 }
-                match about.plain {
-                    true => row.shape::<PLAIN>(form, b),
-                    false => row.shape::<FULL>(form, b),
+                match (about.plain, about.apart) {
+                    (true, _) => row.shape::<PLAIN>(form, b),
+                    (_, true) => row.shape::<APART>(form, b),
+                    _ => row.shape::<FULL>(form, b),
                 }
                 judge.measure(&row, b);
                 // SAFETY: bonds lead to records that the window covers, and a record belongs to one slab.

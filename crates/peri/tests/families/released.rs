@@ -2,10 +2,11 @@
 
 use perigrain_peri::families::*;
 
+use super::cauchy::with_material;
 use super::scene::{Scene, named};
 
 const DX: f64 = 1e-3;
-const KINDS: [&str; 5] = ["pmb", "lps", "ves", "eps", "ves/apart"];
+const KINDS: [&str; 6] = ["pmb", "lps", "ves", "eps", "ves/apart", "cauchy"];
 
 /// A bar that is torn in the middle; its bonds relax and flow before they break.
 fn torn(kind: &'static str, layout: Layout) -> Scene {
@@ -18,6 +19,9 @@ fn torn(kind: &'static str, layout: Layout) -> Scene {
     let (lambda, tau) = if matches!(kind, "ves" | "ves/apart") { (0.6, 3e-7) } else { (0.0, 0.0) };
     s.law.moduli =
         vec![Moduli { bulk: 14e9, shear: 6e9, lambda, tau, yield_stress: 2e7, ..Moduli::default() }];
+    if kind == "cauchy" {
+        s = with_material(s, perigrain_constitutive::Law::Hencky);
+    }
     for (x, v) in s.x.iter().zip(&mut s.v) {
         *v = [if x[0] < 7.5 * DX { -30.0 } else { 30.0 }, 0.0, 0.0];
     }

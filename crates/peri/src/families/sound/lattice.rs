@@ -19,7 +19,7 @@ impl LatticeBody {
         self.sites_are_sound(reference)?;
         self.bonds_are_sound()?;
         let (cells, chunks) = (self.particle.len(), self.intact.len());
-        states(&self.state, &law.kind, (cells + 2 * PAD, self.alive.len() * LANES))?;
+        states(&self.state, &law.kind, (cells, PAD, self.alive.len() * LANES))?;
         states_are_numbers(&self.state)?;
         numbers("displacements", self.u.iter().flatten())?;
         numbers("constants", self.tables.iter().chain(self.pairs.as_flattened()))?;

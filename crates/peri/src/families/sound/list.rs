@@ -20,7 +20,7 @@ impl ListBody {
             must(known, "a record's reference position is not where its particle was")?;
         }
         let n = self.record.len();
-        states(&self.state, &law.kind, (n, self.partner.len()))?;
+        states(&self.state, &law.kind, (n, 0, self.partner.len()))?;
         states_are_numbers(&self.state)?;
         numbers("former displacements", self.last.as_flattened())?;
         let constants =

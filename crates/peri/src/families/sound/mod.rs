@@ -7,6 +7,7 @@
 mod lattice;
 mod list;
 
+use crate::cauchy::Continuum;
 use crate::families::Families;
 use crate::families::lattice::{LANES, PAD};
 use crate::families::law::Law;
@@ -14,6 +15,7 @@ use crate::law::state::SiteState;
 use crate::law::style::Style;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, length, sub};
+use perigrain_constitutive::Memory;
 
 /// What does not fit.
 pub(super) type Fault = std::result::Result<(), String>;
@@ -99,9 +101,15 @@ impl Families {
     /// Where bonds do not remember what the law needs.
     pub fn takes(&self, law: &Law, of_bonds: Option<usize>) -> Result<()> {
         let lattice = |b: &super::lattice::LatticeBody| {
-            states(&b.state, &law.kind, (b.particle.len() + 2 * PAD, b.alive.len() * LANES))
+            states(&b.state, &law.kind, (b.particle.len(), PAD, b.alive.len() * LANES))
         };
-        let list = || states(&self.list.state, &law.kind, (self.list.record.len(), self.list.partner.len()));
+        let list =
+            || states(&self.list.state, &law.kind, (self.list.record.len(), 0, self.list.partner.len()));
+        let remembers = law.kind.correspondence && law.materials.iter().flatten().any(|m| m.remembers());
+        let forgets =
+            |state: &SiteState, sites: usize| remembers && sites > 0 && state.continuum.memory.is_empty();
+        let forgetful = self.lattices.iter().any(|b| forgets(&b.state, b.particle.len()))
+            || forgets(&self.list.state, self.list.record.len());
         let by_bonds = match of_bonds {
             _ if self.list.record.is_empty() => true,
             None => true,
@@ -109,7 +117,7 @@ impl Families {
                 !self.of_bonds.is_empty() && self.list.group_kind.iter().all(|k| usize::from(*k) < types)
             }
         };
-        if by_bonds && self.lattices.iter().all(|b| lattice(b).is_ok()) && list().is_ok() {
+        if by_bonds && !forgetful && self.lattices.iter().all(|b| lattice(b).is_ok()) && list().is_ok() {
             return Ok(());
         }
         let text = "the peridynamic bonds of this scene were made under another style: they do not remember what this one needs";
@@ -141,8 +149,11 @@ fn states_are_numbers(state: &SiteState) -> Fault {
     Ok(())
 }
 
-/// Whether columns of sites and memory of bonds are as long as a law needs: `sites` entries, and numbers for `bonds` bonds.
-fn states(state: &SiteState, law: &Style, (sites, bonds): (usize, usize)) -> Fault {
+/// Whether columns of sites and memory of bonds are as long as a law needs: `count` entries with `pad`
+/// unused ones around them, and numbers for `bonds` bonds.
+fn states(state: &SiteState, law: &Style, (count, pad, bonds): (usize, usize, usize)) -> Fault {
+    continuum(&state.continuum, if law.correspondence { count } else { 0 })?;
+    let sites = count + 2 * pad;
     let (sites, numbers) = if law.has_states() { (sites, bonds * law.memory()) } else { (0, 0) };
     for (what, column) in [
         ("weighted volumes", &state.weighted),
@@ -165,6 +176,25 @@ fn states(state: &SiteState, law: &Style, (sites, bonds): (usize, usize)) -> Fau
         equal(&format!("the number of {what} is"), column.len(), expected)?;
     }
     equal("the number of numbers that bonds remember is", state.memory.len(), numbers)
+}
+
+/// Whether what so many sites have under correspondence is there for each.
+fn continuum(own: &Continuum, count: usize) -> Fault {
+    let Continuum { memory, whole, energy, stress, .. } = own;
+    equal("the number of shape tensors is", whole.len(), count)?;
+    let all_or_none = |len: usize, all: usize| len == 0 || len == all;
+    must(
+        all_or_none(memory.len(), Memory::NUMBERS * count),
+        "not every site has what its material remembers",
+    )?;
+    must(
+        all_or_none(energy.len(), count) && stress.len() == energy.len(),
+        "not every site has a stress and an energy",
+    )?;
+    numbers("shape tensors", whole)?;
+    numbers("numbers that materials remember", memory)?;
+    numbers("energies of sites", energy)?;
+    numbers("stresses of sites", stress.as_flattened())
 }
 
 /// A fault if a particle's reference position is off.
