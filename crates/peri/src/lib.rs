@@ -9,6 +9,7 @@
 mod advance;
 mod breaking;
 pub mod calibration;
+pub mod conduction;
 mod contact;
 mod cut;
 pub mod damage;
