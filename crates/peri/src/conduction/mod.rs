@@ -12,7 +12,7 @@
 pub mod implicit;
 mod sweep;
 
-use crate::families::{Families, Influence, PeriView};
+use crate::families::{Families, Influence};
 use perigrain_base::par;
 
 /// ω w of all bonds, which stay as they are from birth.
@@ -42,18 +42,18 @@ impl Families {
     }
 
     /// Σ ω w |ξ|² V over the family at birth, of each particle.
-    pub fn conducting_volumes(&self, view: &PeriView) -> Vec<f64> {
+    pub fn conducting_volumes(&self, kinds: &[u16], volumes: &[f64]) -> Vec<f64> {
         let influence = self.conducting_influence();
-        let mut m = vec![0.0; view.x.len()];
+        let mut m = vec![0.0; kinds.len()];
         par::each(&mut m[..], |start, m: &mut [f64]| {
             for (k, m) in m.iter_mut().enumerate() {
                 let i = start + k;
                 self.each_apart(i, |bond, length| {
                     let j = bond.partner as usize;
-                    let Some(pair) = self.table.get(view.kind[i], view.kind[j]) else { return };
+                    let Some(pair) = self.table.get(kinds[i], kinds[j]) else { return };
                     let weight =
                         influence.of(length, pair.horizon) * self.weight_of(&bond, length, pair.horizon);
-                    *m += weight * length * length * view.volume[j];
+                    *m += weight * length * length * volumes[j];
                 });
             }
         });

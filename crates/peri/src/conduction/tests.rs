@@ -24,7 +24,7 @@ fn brick(x: &[[f64; 3]], layout: Layout) -> (Families, Conductors) {
     let view = PeriView { x, x0: x, kind: &kind, volume: &volume, bounds, excluded: None };
     let options = FamilyOptions { layout, ..FamilyOptions::new(1.0) };
     let families = Families::build(&view, &table, options).unwrap();
-    let share = families.conducting_volumes(&view).iter().map(|m| 3.0 * K / m).collect();
+    let share = families.conducting_volumes(&kind, &volume).iter().map(|m| 3.0 * K / m).collect();
     (families, Conductors { share, volume })
 }
 
