@@ -27,6 +27,7 @@ mod fuzz_loop;
 mod geometry;
 #[path = "grains/main.rs"]
 mod grains;
+mod heat;
 mod impact;
 #[path = "installed_decks/main.rs"]
 mod installed_decks;

@@ -8,7 +8,7 @@ use perigrain_constitutive::sheet::{Fault, Sheet};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::words::{At, Each, Form, Given, Syntax, Words, read_or};
 use perigrain_styles::{Act, ActCx, BuildCx, CommandStyle, Doc, Style};
-use perigrain_world::material::{Material, Strength};
+use perigrain_world::material::{Material, Strength, Thermal};
 use perigrain_world::potentials;
 
 /// The style.
@@ -92,6 +92,16 @@ enum Property {
     /// The tensile strength, where bonds of `peri/pmb/softening` have their peak [pressure].
     #[word("ft")]
     Tensile(#[word(name = "value", what = "ft")] At<f64>),
+    /// The conductivity k of `fix heat/peri` [energy/(time length temperature)].
+    Conductivity(#[word(name = "value", what = "conductivity")] At<f64>),
+    /// The specific heat c_p of `fix heat/peri` [energy/(mass temperature)].
+    #[word("heat_capacity")]
+    HeatCapacity(#[word(name = "value", what = "heat_capacity")] At<f64>),
+    /// The thermal expansion α_T: particles with a temperature T strain by α_T (T − T0); 0 by default [1/temperature].
+    Expansion(#[word(name = "value", what = "expansion")] At<f64>),
+    /// T0, at which the material is free of stress; 0 by default [temperature].
+    #[word("stress_free")]
+    StressFree(#[word(name = "value", what = "stress_free")] At<f64>),
 }
 
 impl CommandStyle for MaterialStyle {
@@ -206,6 +216,10 @@ impl Property {
             Self::Stretch(at) => (m.strength = Some(Strength::Stretch(at.value)), at).1,
             Self::Alpha(at) => (m.alpha = at.value, at).1,
             Self::Tensile(at) => (m.tensile = Some(at.value), at).1,
+            Self::Conductivity(at) => (m.thermal.conductivity = at.value, at).1,
+            Self::HeatCapacity(at) => (m.thermal.heat_capacity = at.value, at).1,
+            Self::Expansion(at) => (m.thermal.expansion = at.value, at).1,
+            Self::StressFree(at) => (m.thermal.stress_free = at.value, at).1,
         }
     }
 }
@@ -221,6 +235,7 @@ fn blank(id: &str) -> Material {
         alpha: 0.0,
         tensile: None,
         sheet: Sheet::default(),
+        thermal: Thermal::default(),
         source: String::new(),
         date: String::new(),
     }
@@ -356,6 +371,15 @@ mod tests {
         let m = parse(&si(), "material m E 7e10 nu 0.25 rho 2500 Gc 8 alpha 0.25").unwrap();
         assert_eq!((m.young, m.nu, m.density, m.alpha), (7e10, 0.25, 2500.0, 0.25));
         assert_eq!(m.strength, Some(Strength::FractureEnergy(8.0)));
+    }
+
+    #[test]
+    fn heat_in_the_line() {
+        let line = "material m E 1 nu 0.25 rho 1 conductivity 401 heat_capacity 385 expansion 1.7e-5 stress_free 293";
+        let heat =
+            Thermal { conductivity: 401.0, heat_capacity: 385.0, expansion: 1.7e-5, stress_free: 293.0 };
+        assert_eq!(parse(&si(), line).unwrap().thermal, heat);
+        assert!(parse(&si(), "material m E 1 nu 0.25 rho 1 conductivity -1").is_err());
     }
 
     #[test]

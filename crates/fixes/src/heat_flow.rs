@@ -1,5 +1,6 @@
 //! fix heat/flow: integrates temperatures from the heat that flows into particles.
 
+use super::heat::{Mover, enter, leave};
 use super::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::par;
@@ -9,9 +10,9 @@ use perigrain_styles::matter::{Masses, check_masses};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Grammar, Kind, Part, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
-use perigrain_world::GroupId;
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::field::{COLUMNS, KIND, MASK, MASS, TYPE_MASS};
+use perigrain_world::{GroupId, World};
 
 /// The style.
 pub struct HeatFlow;
@@ -118,6 +119,15 @@ impl Fix for Declared {
                 Ok(())
             });
         Ok(vec![op.in_every_level().boxed()])
+    }
+
+    fn declare(&self, w: &mut World) -> Result<()> {
+        enter(w, &self.id, Mover { bit: self.group.bit(), bonds: false });
+        Ok(())
+    }
+
+    fn remove(&self, w: &mut World) {
+        leave(w, &self.id);
     }
 }
 

@@ -38,6 +38,7 @@ mod faces;
 mod freeze;
 mod gravity;
 mod halt;
+mod heat;
 mod heat_flow;
 mod indent;
 mod kick;
@@ -121,6 +122,10 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &gravity::Gravity,
     &halt::HaltFix,
     &heat_flow::HeatFlow,
+    &heat::HeatPeri,
+    &heat::HeldAt,
+    &heat::Flux,
+    &heat::Convect,
     &indent::Indent,
     &langevin::Langevin,
     &lineforce::LineForce,

@@ -10,6 +10,7 @@ mod advance;
 mod breaking;
 pub mod calibration;
 mod cauchy;
+pub mod conduction;
 mod contact;
 mod cut;
 pub mod damage;

@@ -27,10 +27,26 @@ pub struct Material {
     pub tensile: Option<f64>,
     /// Its elastic law, flow and damage.
     pub sheet: Sheet,
+    /// How it conducts heat, stores it and expands.
+    #[serde(default)]
+    pub thermal: Thermal,
     /// Where the numbers come from.
     pub source: String,
     /// When the record was last checked, `YYYY-MM-DD`.
     pub date: String,
+}
+
+/// Heat in a material; what is not given is 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Thermal {
+    /// Conductivity k, W/(m K) in SI.
+    pub conductivity: f64,
+    /// Specific heat c_p, J/(kg K) in SI.
+    pub heat_capacity: f64,
+    /// Thermal expansion α_T, 1/K in SI.
+    pub expansion: f64,
+    /// The temperature at which it is free of stress, K in SI.
+    pub stress_free: f64,
 }
 
 /// The two ways to define when a bond breaks.
@@ -90,6 +106,7 @@ impl Material {
             strength,
             alpha: r.alpha.as_ref().map_or(0.0, |a| *a.get_ref()),
             tensile: r.ft.as_ref().map(|f| quantity(f, PRESSURE)).transpose()?,
+            thermal: Thermal::default(),
             source: r.source,
             date: r.date,
         };
@@ -112,6 +129,9 @@ impl Material {
         self.young /= pressure;
         self.density /= mass / length.powi(3);
         self.tensile = self.tensile.map(|f| f / pressure);
+        // Temperatures keep their unit: k is a power over length and temperature, c_p a velocity squared over temperature.
+        self.thermal.conductivity /= pressure * length * length / time;
+        self.thermal.heat_capacity /= length * length / (time * time);
         if let Some(Strength::FractureEnergy(g)) = &mut self.strength {
             *g /= pressure * length;
         }
@@ -155,6 +175,20 @@ impl Material {
         if self.tensile.is_some_and(|f| !positive(f)) {
             return Some(("ft", "ft must be positive"));
         }
+        let Thermal { conductivity, heat_capacity, expansion, stress_free } = self.thermal;
+        let given = |x: f64| x.is_finite() && x >= 0.0;
+        if !given(conductivity) {
+            return Some(("conductivity", "conductivity must not be negative"));
+        }
+        if !given(heat_capacity) {
+            return Some(("heat_capacity", "heat_capacity must not be negative"));
+        }
+        if !expansion.is_finite() {
+            return Some(("expansion", "expansion must be a number"));
+        }
+        if !stress_free.is_finite() {
+            return Some(("stress_free", "stress_free must be a temperature"));
+        }
         None
     }
 }
@@ -197,6 +231,12 @@ mod tests {
         let cgs = m.clone().in_units(UnitSystem::Cgs.mechanical().unwrap());
         assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5) && near(cgs.tensile.unwrap(), 3e7));
         assert!(matches!(cgs.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
+        // 1 W/(m K) = 1e5 erg/(s cm K), 1 J/(kg K) = 1e4 erg/(g K).
+        let heat = Thermal { conductivity: 400.0, heat_capacity: 380.0, expansion: 1e-5, stress_free: 293.0 };
+        let cgs =
+            Material { thermal: heat, ..m.clone() }.in_units(UnitSystem::Cgs.mechanical().unwrap()).thermal;
+        assert!(near(cgs.conductivity, 4e7) && near(cgs.heat_capacity, 3.8e6));
+        assert_eq!((cgs.expansion, cgs.stress_free), (1e-5, 293.0));
         // One micro unit of pressure is 1e3 Pa, of density 1e3 kg/m³, of energy per area 1e-3 J/m².
         let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());
         assert!(near(micro.young, 2e6) && near(micro.density, 1.5));

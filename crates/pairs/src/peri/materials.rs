@@ -355,7 +355,13 @@ fn of(m: &Material, law: &'static Style) -> Stuff {
         form: Form::default(),
         horizon: 0.0,
         law,
-        extra: Moduli::default(),
+        extra: Moduli {
+            conductivity: m.thermal.conductivity,
+            heat_capacity: m.thermal.heat_capacity,
+            expansion: m.thermal.expansion,
+            stress_free: m.thermal.stress_free,
+            ..Moduli::default()
+        },
     }
 }
 

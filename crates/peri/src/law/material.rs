@@ -64,6 +64,18 @@ pub struct Moduli {
     /// Stretch beyond which microelastic bonds soften.
     #[serde(default)]
     pub peak: f64,
+    /// Conductivity [energy/(time length temperature)].
+    #[serde(default)]
+    pub conductivity: f64,
+    /// Specific heat [energy/(mass temperature)].
+    #[serde(default)]
+    pub heat_capacity: f64,
+    /// Thermal expansion [1/temperature].
+    #[serde(default)]
+    pub expansion: f64,
+    /// The temperature at which there is no thermal strain.
+    #[serde(default)]
+    pub stress_free: f64,
 }
 
 impl Moduli {
