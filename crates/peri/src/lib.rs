@@ -10,6 +10,7 @@ mod advance;
 mod breaking;
 pub mod calibration;
 mod contact;
+mod criteria;
 mod cut;
 pub mod damage;
 mod energy;

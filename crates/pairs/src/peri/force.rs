@@ -1,9 +1,11 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
 use super::scatter::Scatter;
-use super::{Pair, Solid, bond_weights, pulled, reunion};
+use super::{Pair, Solid, bond_weights, breaking, pulled, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
+use perigrain_peri::families::{
+    Criterion, Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable,
+};
 use perigrain_plan::{About, Level, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::peri_view::view;
 use perigrain_world::adapted::Coefficient;
@@ -84,6 +86,7 @@ impl Op for Force {
         }
         let Some(mut families) = w.families.take() else { return Ok(()) };
         families.law.dt = t.dt;
+        families.unjudged = t.step % self.style.breaking.every != 0;
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
         if t.atom_energy {
@@ -144,14 +147,27 @@ impl Force {
         let Some(mut families) = w.families.take() else { return Ok(()) };
         let table = self.table(w)?;
         families.refresh(&view(w)?, &table);
+        families.work_limits = breaking::work_limits(&self.style, &self.broken_at(&table), w);
         w.families = Some(families).into();
         Ok(())
+    }
+
+    /// The coefficients in force with micro-moduli as lines say them, which fracture energies go with.
+    fn broken_at(&self, table: &PmbTable) -> PmbTable {
+        let (mut broken, types) = (table.clone(), table.types() as u16);
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let (Some(own), Some(declared)) = (table.get(i, j), self.declared.get(i, j)) else { continue };
+            // Both were accepted before.
+            let _ = broken.set(i, j, PmbCoeff { c: declared.c, ..*own });
+        }
+        broken
     }
 
     /// Gives bonds their factors, which refreshed families may have of an earlier run.
     fn scatter(&self, w: &World, families: &mut Families) {
         let own = |i: usize| bond_weights::strength(&self.style, families, w.particles.kind[i], i);
-        let by_horizon: Vec<f64> = match families.spacing.is_empty() {
+        let by_stretch = self.options.criterion == Criterion::Stretch;
+        let by_horizon: Vec<f64> = match families.spacing.is_empty() || !by_stretch {
             true => vec![],
             false => (0..w.n()).map(own).collect(),
         };
@@ -212,6 +228,7 @@ impl Force {
             }
         };
         self.scatter(w, &mut families);
+        families.work_limits = breaking::work_limits(&self.style, &self.broken_at(&table), w);
         w.families = Some(families).into();
         self.mark(w)?;
         reunion::check_spheres(&self.style, w)

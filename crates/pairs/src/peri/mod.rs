@@ -2,6 +2,7 @@
 
 mod bond_probe;
 mod bond_weights;
+mod breaking;
 mod eps;
 mod force;
 mod horizon;
@@ -20,6 +21,7 @@ mod ves;
 
 use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
 use bond_probe::BondProbe;
+use breaking::Breaking;
 pub use eps::PeriEps;
 use force::Force;
 pub use lines::of_bonds;
@@ -61,6 +63,8 @@ struct Solid {
     calibrate: Calibrate,
     /// What bonds are weighed by one at a time.
     weights: BondWeights,
+    /// By what bonds break.
+    breaking: Breaking,
     /// Broken bonds still push.
     compress: bool,
     /// The rule of unloading that a line has said.
@@ -116,6 +120,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         volume: VolumeRule::Lammps,
         calibrate: Calibrate::No,
         weights: BondWeights::default(),
+        breaking: Breaking::default(),
         compress: false,
         unloading: None,
         lasting: vec![],
@@ -223,6 +228,7 @@ impl Solid {
             no_repulsion: self.no_repulsion,
             reunite: self.reunite.is_some_and(|r| r.0),
             weights: self.weights,
+            criterion: self.breaking.criterion,
         }
     }
 
@@ -268,7 +274,9 @@ impl Pair for Solid {
             mixes: false,
             balances: self.law.kind.memory() == 0,
             solids: types().filter(|&i| self.covers(i, i)).collect(),
-            unbreakable: types().find(endless).filter(|_| !self.materials.is_empty()),
+            unbreakable: types()
+                .find(endless)
+                .filter(|_| !self.materials.is_empty() && !self.breaking.criterion.of_sites()),
             coefficients: match self.law.kind {
                 // Peak, last stretch and energy belong together.
                 kind if kind.softens() => &[],
@@ -339,6 +347,7 @@ impl Pair for Solid {
         }
         let options = self.options(w);
         bond_weights::allowed(self, &options, w.settings.two_dimensional, span)?;
+        breaking::allowed(self, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
@@ -347,6 +356,7 @@ impl Pair for Solid {
             style.law.shape_bonds();
         }
         style.law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(span))?;
+        breaking::moduli(&mut style, &self.table);
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",

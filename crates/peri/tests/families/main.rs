@@ -1,6 +1,7 @@
 //! Peridynamic families on raw arrays: golden numbers, layouts against each other, patch tests, determinism.
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
+mod criteria;
 mod cuts;
 mod endurance;
 mod flying;
