@@ -51,6 +51,7 @@ mod nve_limit;
 mod nve_noforce;
 mod nve_sphere;
 mod path;
+mod peri_strength;
 mod planeforce;
 mod pour;
 mod print;
@@ -131,6 +132,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve_noforce::NveNoForce,
     &nve_bpm_sphere::NveBpmSphere,
     &nve_sphere::NveSphere,
+    &peri_strength::PeriStrength,
     &planeforce::PlaneForce,
     &pour::Pour,
     &print::Print,

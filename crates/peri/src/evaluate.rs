@@ -136,6 +136,7 @@ impl Families {
             relaxing: None,
             counts_losses: false,
             breaking_share: None,
+            ratios: vec![],
             unjudged: false,
             four_lanes: false,
             almost: vec![],
@@ -221,8 +222,7 @@ impl Families {
     /// Whether bonds may break, flow or remember anything else.
     pub fn change(&self) -> bool {
         let breaks = |c: &PmbCoeff| c.s00.is_finite();
-        let by_sites = self.options.criterion.of_sites();
-        by_sites
+        self.options.criterion.by_itself()
             || self.law.kind.memory() > 0
             || self.table.iter().any(breaks)
             || self.of_bonds.iter().any(breaks)

@@ -3,28 +3,30 @@
 use super::Solid;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::{Vec3, length, sub};
+use perigrain_lang::ValueRef;
 use perigrain_peri::calibration::crossing;
 use perigrain_peri::families::{Criterion, PmbCoeff, PmbTable};
 use perigrain_peri::law::LawKind;
 use perigrain_peri::moduli::{self, BOND_NU, Elastic};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::At;
 use perigrain_world::{Lattice, World};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 /// By what bonds break, and how often they are judged.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Breaking {
     /// By what.
     pub criterion: Criterion,
+    /// The formula that decides, if one does.
+    pub formula: Option<ValueRef>,
     /// At multiples of so many steps.
     pub every: i64,
 }
 
 impl Default for Breaking {
     fn default() -> Self {
-        Self { criterion: Criterion::default(), every: 1 }
+        Self { criterion: Criterion::default(), formula: None, every: 1 }
     }
 }
 
@@ -32,13 +34,13 @@ impl Default for Breaking {
 ///
 /// # Errors
 /// Work that would be counted from the middle of a scene on.
-pub fn choose(style: &mut Solid, chosen: At<Criterion>, cx: &BuildCx) -> Result<()> {
-    let late = |criterion: Criterion| criterion != Criterion::Work && chosen.value == Criterion::Work;
+pub fn choose(style: &mut Solid, chosen: Criterion, at: Span, cx: &BuildCx) -> Result<()> {
+    let late = |criterion: Criterion| criterion != Criterion::Work && chosen == Criterion::Work;
     if cx.world.families.as_ref().is_some_and(|f| late(f.options.criterion)) {
         let text = "peri_modify break energy comes too late: the work on bonds counts from the first run on";
-        return fail(Code::WRONG_ORDER, chosen.span, text);
+        return fail(Code::WRONG_ORDER, at, text);
     }
-    style.breaking.criterion = chosen.value;
+    style.breaking.criterion = chosen;
     Ok(())
 }
 

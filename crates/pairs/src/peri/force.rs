@@ -8,6 +8,7 @@ use perigrain_peri::families::{
 };
 use perigrain_plan::{About, Level, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::peri_view::view;
+use perigrain_styles::{BondFormula, FORMULAS};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
     BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS,
@@ -30,11 +31,18 @@ pub struct Force {
     keys: Vec<((u16, u16), [Numbers; 3])>,
     /// Where the energy goes.
     tally: Key<f64>,
+    /// By what bonds break, where a formula decides.
+    formula: Option<BondFormula>,
 }
 
 impl Force {
     /// The op of a style.
-    pub fn new(style: Solid, declared: PmbTable, options: FamilyOptions, scatter: Scatter) -> Self {
+    pub fn new(
+        style: Solid,
+        declared: PmbTable,
+        options: FamilyOptions,
+        (scatter, formula): (Scatter, Option<BondFormula>),
+    ) -> Self {
         let name = format!("pair {}", style.name);
         let key = |types, name: &str| {
             let (style, name) = (style.name.to_string(), name.to_string());
@@ -44,13 +52,14 @@ impl Force {
         let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
         let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
         let tally = Key::new(style.name);
-        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally }
+        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally, formula }
     }
 }
 
 impl Op for Force {
     fn about(&self) -> About {
         let factors = if self.scatter.any() { COLUMNS } else { Fields::NONE };
+        let formula = if self.formula.is_some() { FORMULAS } else { Fields::NONE };
         About {
             level: Level::At(0),
             ..About::new(
@@ -68,7 +77,8 @@ impl Op for Force {
                             | MEMO
                             | DENSITY
                             | RADIUS
-                            | factors,
+                            | factors
+                            | formula,
                     )
                     .add(F)
                     .write(LISTS | FAMILIES | SITES | TALLY | FACTS)
@@ -84,9 +94,14 @@ impl Op for Force {
         } else if self.adapted != w.adaptations() {
             self.adapt(w)?;
         }
+        let due = t.step % self.style.breaking.every == 0;
+        let ratios = match &mut self.formula {
+            Some(formula) if due && !t.setup && !t.trial => formula(w)?,
+            _ => vec![],
+        };
         let Some(mut families) = w.families.take() else { return Ok(()) };
         families.law.dt = t.dt;
-        families.unjudged = t.step % self.style.breaking.every != 0;
+        (families.unjudged, families.ratios) = (!due, ratios);
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
         if t.atom_energy {

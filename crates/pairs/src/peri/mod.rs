@@ -36,7 +36,7 @@ use perigrain_peri::families::{
     VolumeRule,
 };
 use perigrain_peri::law::{LawKind, Style};
-use perigrain_plan::Op;
+use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::words::Words;
@@ -276,7 +276,7 @@ impl Pair for Solid {
             solids: types().filter(|&i| self.covers(i, i)).collect(),
             unbreakable: types()
                 .find(endless)
-                .filter(|_| !self.materials.is_empty() && !self.breaking.criterion.of_sites()),
+                .filter(|_| !self.materials.is_empty() && !self.breaking.criterion.by_itself()),
             coefficients: match self.law.kind {
                 // Peak, last stretch and energy belong together.
                 kind if kind.softens() => &[],
@@ -361,7 +361,13 @@ impl Pair for Solid {
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
+        let breaking = &style.breaking;
+        let when = if breaking.every == 1 { When::Always } else { When::Every(breaking.every) };
+        let formula = match &breaking.formula {
+            Some(r) => Some(cx.bond_formula(r, Stage::PreForce, &when)?),
+            None => None,
+        };
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, (scatter, formula))))])
     }
 
     fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {

@@ -38,6 +38,9 @@ impl Families {
             return;
         }
         let criterion = self.options.criterion;
+        if criterion == Criterion::Formula {
+            return self.find_by_ratio(view, cell, broken);
+        }
         let ends = criterion.of_sites().then(|| Ends::of(self, view));
         let types = self.table.types();
         let ratio = |bond: &Stretched, work: &[[f64; 2]]| match (&ends, criterion) {
@@ -65,6 +68,52 @@ impl Families {
         for (bond, ends) in of_list(list, cell, &|bond| judge(bond, &list.work)) {
             broken.push(Broken { body: LIST, bond, square: square(view, ends) });
         }
+    }
+}
+
+impl Families {
+    /// The particles at the ends of each living bond.
+    pub fn living(&self) -> Vec<[u32; 2]> {
+        let mut all = vec![];
+        self.each_living(|_, _, _, ends| all.push(ends));
+        all
+    }
+
+    /// Calls `f` for each living bond with the number of its body, its sites, its own number and its particles.
+    fn each_living(&self, mut f: impl FnMut(usize, [usize; 2], usize, [u32; 2])) {
+        for (k, body) in self.lattices.iter().enumerate() {
+            for slot in 0..body.rows.len() {
+                each_of_row(body, slot, |cell, to, e| {
+                    f(k, [cell, to], e, [body.particle[cell], body.particle[to]]);
+                });
+            }
+        }
+        let list = &self.list;
+        for i in 0..list.record.len() {
+            for b in list.own(i).filter(|b| list.lives(*b)) {
+                let j = list.partner[b] as usize;
+                f(LIST, [i, j], b, [list.particle[i], list.particle[j]]);
+            }
+        }
+    }
+
+    /// The bonds whose ratio, from a formula, is 1 or more; none in steps without ratios.
+    fn find_by_ratio(&self, view: &PeriView, cell: &Cell, broken: &mut Vec<Broken>) {
+        let mut ratios = self.ratios.iter();
+        let spared = |p: u32| self.lasting.get(p as usize).copied().unwrap_or(false);
+        self.each_living(|body, sites, bond, ends| {
+            let Some(&ratio) = ratios.next() else { return };
+            let [i, j] = sites;
+            let (z, strength) = match self.lattices.get(body) {
+                Some(own) => (own.z(1, i, j, bond), own.scatter.strength(sites)),
+                None => (self.list.z(false, i, j, cell).0, self.list.scatter.strength(sites)),
+            };
+            let ratio = ratio / strength;
+            if ratio >= 1.0 && z > 0.0 && !ends.iter().any(|p| spared(*p)) {
+                let bond = candidate(sites, bond, ratio);
+                broken.push(Broken { body, bond, square: square(view, ends) });
+            }
+        });
     }
 }
 

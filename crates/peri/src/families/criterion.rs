@@ -14,12 +14,19 @@ pub enum Criterion {
     Strain(f64),
     /// Von Mises' stress [pressure], mean of both ends.
     Shear(f64),
+    /// A ratio that a formula gives each bond, [`Families::ratios`](crate::families::Families::ratios).
+    Formula,
 }
 
 impl Criterion {
     /// Whether the sites of bonds are looked at, not the bonds alone.
     pub fn of_sites(self) -> bool {
         matches!(self, Self::Stress(_) | Self::Strain(_) | Self::Shear(_))
+    }
+
+    /// Whether bonds without a critical stretch may break.
+    pub fn by_itself(self) -> bool {
+        self.of_sites() || self == Self::Formula
     }
 
     /// Whether bonds are judged by a Neo-Hookean stress of their ends.

@@ -110,6 +110,10 @@ pub struct Families {
     /// as much and this share of the others; `None`: all.
     #[serde(skip)]
     pub breaking_share: Option<f64>,
+    /// Of each living bond the ratio of what it bears to what it can bear, in the order of [`Families::living`], where a formula
+    /// gives that.
+    #[serde(skip)]
+    pub ratios: Vec<f64>,
     /// Bonds are not judged in this step, where another criterion than their stretch decides.
     #[serde(skip)]
     pub unjudged: bool,
