@@ -1,6 +1,7 @@
 //! Commands as a graph of declarations, acts and runs.
 
 pub mod answers;
+mod bond_formulas;
 pub mod bonds;
 pub mod build;
 pub mod catalogue;

@@ -33,7 +33,7 @@ pub fn text(
 }
 
 /// Where the values that formulas need are found, planned.
-fn sources(
+pub(super) fn sources(
     s: &mut Sealer,
     needed: Vec<Dep>,
     span: Span,
@@ -105,7 +105,7 @@ fn depends(text: &str, span: Span, vars: &Vars) -> Result<Vec<Dep>> {
     Ok(found)
 }
 
-fn of_variable(name: &str, vars: &Vars) -> Vec<Dep> {
+pub(super) fn of_variable(name: &str, vars: &Vars) -> Vec<Dep> {
     let name = vars.formatted(name).unwrap_or(name);
     vars.depends(name)
 }

@@ -1,4 +1,5 @@
-//! Peridynamic scenes of the program: lattices against lists, weights of bonds.
+//! Peridynamic scenes of the program: lattices against lists, weights of bonds, criteria of breaking.
 
 mod bond_weights;
+mod breaking;
 mod scatter;

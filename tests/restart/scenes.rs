@@ -129,6 +129,14 @@ pub const IMPACT_AGAIN: &str = "pair_style hybrid/overlay peri/pmb granular\n\
 pub const LPS_AGAIN: &str = "pair_style peri/lps\npair_coeff * * 14e9 6e9 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute dil all dilatation/atom\ncompute dsum all reduce sum c_dil\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+/// Bonds that break by the work done on them, and by the strain of their ends.
+pub const WORK_AGAIN: &str = "pair_style peri/ves\npair_coeff * * 14e9 6e9 0.0030001 0.0015 0.25 0.6 4e-7\nneighbor 0.0006 bin\n\
+    peri_modify break energy\nfix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
+    thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
+pub const STRAIN_AGAIN: &str = "pair_style peri/pmb\npair_coeff * * 1.6e21 0.0030001 0.0015 0.25\nneighbor 0.0006 bin\n\
+    peri_modify break strain 0.001 every 3\nfix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\n\
+    compute dsum all reduce sum c_dmg\nthermo_style custom step time pe ke press c_dsum\n\
+    thermo_modify format float %24.17g\nthermo 5\n";
 pub const VES_AGAIN: &str = "pair_style peri/ves\npair_coeff * * 14e9 6e9 0.0030001 0.0015 0.25 0.6 4e-7\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute dil all dilatation/atom\ncompute dsum all reduce sum c_dil\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
@@ -213,6 +221,9 @@ pub const SCENES: [Scene; 24] = [
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
     Scene { name: "softening", make: BLOCK, again: SOFT_AGAIN, steps: 60, list: false },
     Scene { name: "softening, list", make: BLOCK, again: DECAYING_AGAIN, steps: 60, list: true },
+    Scene { name: "work", make: BLOCK, again: WORK_AGAIN, steps: 60, list: false },
+    Scene { name: "work, list", make: BLOCK, again: WORK_AGAIN, steps: 40, list: true },
+    Scene { name: "strain", make: BLOCK, again: STRAIN_AGAIN, steps: 60, list: false },
     Scene { name: "shaped", make: BLOCK, again: SHAPED_AGAIN, steps: 60, list: false },
     Scene { name: "own horizons", make: UNLIKE, again: UNLIKE_AGAIN, steps: 60, list: false },
     Scene { name: "averages", make: BLOCK, again: AVERAGES_AGAIN, steps: 60, list: false },

@@ -52,6 +52,7 @@ mod nve_limit;
 mod nve_noforce;
 mod nve_sphere;
 mod path;
+mod peri_strength;
 mod planeforce;
 mod pour;
 mod print;
@@ -136,6 +137,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &nve_noforce::NveNoForce,
     &nve_bpm_sphere::NveBpmSphere,
     &nve_sphere::NveSphere,
+    &peri_strength::PeriStrength,
     &planeforce::PlaneForce,
     &pour::Pour,
     &print::Print,

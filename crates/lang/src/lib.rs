@@ -38,4 +38,4 @@ pub use reference::{Param, RefKind, ValueRef};
 pub use script::Script;
 pub use substitute::{Substituted, substitute, substitute_known};
 pub use value::{Clock, Env, Question, Value};
-pub use vars::{Kind, Partition, Turn, Vars, python};
+pub use vars::{BOND_WORDS, Bonds, Kind, Partition, Turn, Vars, python};

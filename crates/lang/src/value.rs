@@ -110,6 +110,10 @@ pub trait Env {
     fn timed_out(&self) -> bool {
         false
     }
+    /// The values of the first (1) or second (2) end of each bond, from those of all particles; `None` where there are no bonds.
+    fn of_ends(&self, _values: &[f64], _end: usize) -> Option<Vec<f64>> {
+        None
+    }
     /// The present step and run.
     fn clock(&self) -> Clock;
     /// How many particles there are.

@@ -4,7 +4,7 @@ use crate::breaking::{Bonds, find_broken};
 use crate::evaluate::periods;
 use crate::families::bond::Broken;
 use crate::families::shares::BodyShare;
-use crate::families::{Candidate, Cell, Families, Moved, PeriView};
+use crate::families::{Candidate, Cell, Criterion, Families, Moved, PeriView};
 use crate::list;
 use crate::list::breaking::candidates;
 use crate::list::kernel::Rules;
@@ -17,6 +17,9 @@ impl Families {
     /// Breaks bonds and makes this step the previous one.
     pub(super) fn advance(&mut self, view: &PeriView, cell: &Cell, shared: Option<Together>) {
         let top = shared.as_ref().map(|(agreed, _)| agreed.top);
+        if self.options.criterion == Criterion::Work {
+            self.work_on_bonds(view, cell);
+        }
         if self.breaking_enabled {
             match shared {
                 Some(shared) => self.break_bonds(view, cell, Some(shared)),
@@ -38,7 +41,10 @@ impl Families {
         let mut broken = std::mem::take(&mut self.scratch.broken);
         broken.clear();
         let some = agreed.map_or_else(|| self.list.is_strained(), |agreed| agreed.strained);
-        self.find_all(view, cell, (share.flatten(), some), &mut broken);
+        match self.options.criterion {
+            Criterion::Stretch => self.find_all(view, cell, (share.flatten(), some), &mut broken),
+            _ => self.find_by_criterion(view, cell, &mut broken),
+        }
         if let Some(share) = self.breaking_share {
             keep_weakest(&mut broken, share);
         }

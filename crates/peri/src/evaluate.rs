@@ -6,8 +6,8 @@ use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
 use crate::families::shares::Shares;
 use crate::families::{
-    AlmostLattice, Bounds, Cell, Edges, Families, FamilyOptions, Law, Layout, NearPairs, PeriTally, PeriView,
-    PmbCoeff, PmbTable, Scratch,
+    AlmostLattice, Bounds, Cell, Criterion, Edges, Families, FamilyOptions, Law, Layout, NearPairs,
+    PeriTally, PeriView, PmbCoeff, PmbTable, Scratch,
 };
 use crate::lattice::gather::gather;
 use crate::lattice::sweep::Mode;
@@ -117,6 +117,7 @@ impl Families {
             options,
             law,
             of_bonds: vec![],
+            work_limits: vec![],
             seen: 0,
             breaking_enabled: false,
             lattices: vec![],
@@ -139,6 +140,8 @@ impl Families {
             counts_losses: false,
             breaking_share: None,
             implicit: false,
+            ratios: vec![],
+            unjudged: false,
             four_lanes: false,
             almost: vec![],
             weighed: None,
@@ -223,7 +226,10 @@ impl Families {
     /// Whether bonds may break, flow or remember anything else.
     pub fn change(&self) -> bool {
         let breaks = |c: &PmbCoeff| c.s00.is_finite();
-        self.law.kind.memory() > 0 || self.table.iter().any(breaks) || self.of_bonds.iter().any(breaks)
+        self.options.criterion.by_itself()
+            || self.law.kind.memory() > 0
+            || self.table.iter().any(breaks)
+            || self.of_bonds.iter().any(breaks)
     }
 
     /// How long the longest bond at the start may be.
@@ -281,7 +287,9 @@ impl Families {
     pub fn is_shared(&self, advance: bool, tallied: bool) -> bool {
         // The energies of dilatations are added up one site after the other.
         let rows = !tallied || self.law.kind.bond_based;
-        !self.law.kind.correspondence && self.shares.is_some() && advance && rows && !self.counts_losses
+        let by_stretch = self.options.criterion == Criterion::Stretch;
+        let (shared, correspondence) = (self.shares.is_some(), self.law.kind.correspondence);
+        shared && !correspondence && advance && rows && by_stretch && !self.counts_losses
     }
 
     /// Which kernels serve on this processor.

@@ -50,6 +50,14 @@ impl Families {
         self.list.scatter = Scatter::new(&self.list.particle, strength, stiffness);
     }
 
+    /// Gives particles other factors on the critical stretches of their bonds, by a column that is empty where there are none.
+    pub fn set_strengths(&mut self, strength: &[f64]) {
+        for body in &mut self.lattices {
+            body.scatter.set_strengths(&body.particle, strength);
+        }
+        self.list.scatter.set_strengths(&self.list.particle, strength);
+    }
+
     /// The factor on how stiff the bonds of a particle are.
     pub(crate) fn stiffness_of(&self, i: usize) -> f64 {
         let Some(place) = self.place.get(i).copied().filter(|place| *place != u32::MAX) else { return 1.0 };

@@ -49,7 +49,7 @@ pub use compute::{Compute, ComputeStyle};
 pub use dump::{Dump, DumpStyle};
 pub use fix::{Fix, FixStyle};
 pub use pair::{Pair, PairStyle, TypePairs};
-pub use seal::{FORMULAS, Gravity, PlaceTest, Pull, Reading, SealCx, Text, Wants};
+pub use seal::{BondFormula, FORMULAS, Gravity, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 
 use perigrain_world::Registration;
 

@@ -2,7 +2,7 @@
 
 use crate::BondForce;
 use crate::probe::Probe;
-use perigrain_base::diag::{Result, Span};
+use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Param, ValueRef};
 use perigrain_output::log::Log;
 use perigrain_plan::{Level, Op, Stage, When};
@@ -153,6 +153,10 @@ pub type Text = Box<dyn FnMut(&World) -> Result<String> + Send>;
 /// Decides about a place: whether a variable is not zero there.
 pub type PlaceTest = Box<dyn FnMut(&World, [f64; 3]) -> Result<bool> + Send>;
 
+/// Gives the values of a bond-style variable for all living bonds, in the order of `Families::living`; an op that holds one may read
+/// what [`FORMULAS`] allows, and families.
+pub type BondFormula = Box<dyn FnMut(&World) -> Result<Vec<f64>> + Send>;
+
 /// The acceleration that a fix gives to all particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pull {
@@ -234,6 +238,13 @@ pub trait SealCx {
         stage: Stage,
         when: &When,
     ) -> Result<PlaceTest>;
+    /// A bond-style variable, its values fresh as with `value`.
+    ///
+    /// # Errors
+    /// Unknown variables, and those of other styles.
+    fn bond_formula(&mut self, r: &ValueRef, _stage: Stage, _when: &When) -> Result<BondFormula> {
+        fail(Code::UNKNOWN_VARIABLE, r.span, format!("there is no variable `{}`", r.name))
+    }
     /// The accelerations of the fixes gravity in force.
     fn pulls(&self) -> Vec<Pull>;
     /// The same fixes as those see them that pull bodies for them.

@@ -1,7 +1,7 @@
 //! What ops can request while a plan is made.
 
 use super::Sealer;
-use crate::graph::texts;
+use crate::graph::{bond_formulas, texts};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{RefKind, ValueRef};
 use perigrain_output::log::Log;
@@ -9,7 +9,7 @@ use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
 use perigrain_styles::pair::Deck;
 use perigrain_styles::probe::Probe;
-use perigrain_styles::{Compute, Gravity, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
+use perigrain_styles::{BondFormula, Compute, Gravity, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::{SlotId, World};
 
@@ -97,6 +97,11 @@ impl SealCx for Sealer<'_> {
     ) -> Result<PlaceTest> {
         let vars = self.vars.clone();
         texts::test(self, vars, r, sets, stage, when)
+    }
+
+    fn bond_formula(&mut self, r: &ValueRef, stage: Stage, when: &When) -> Result<BondFormula> {
+        let vars = self.vars.clone();
+        bond_formulas::formula(self, vars, r, stage, when)
     }
 
     fn pulls(&self) -> Vec<Pull> {

@@ -27,6 +27,8 @@ pub(in super::super) enum Yields {
     Vector,
     /// A value per particle.
     Particles,
+    /// A value per bond.
+    Bonds,
 }
 
 /// The variables under evaluation, outermost first.
@@ -43,6 +45,11 @@ impl Trail {
     /// For a formula that yields a value per particle.
     pub fn for_particles() -> Self {
         Self { yields: Yields::Particles, ..Self::default() }
+    }
+
+    /// For a formula that yields a value per bond.
+    pub fn for_bonds() -> Self {
+        Self { yields: Yields::Bonds, ..Self::default() }
     }
 
     /// Goes into a variable; refuses circles and endless chains.
@@ -188,6 +195,9 @@ impl Expr {
                         _ => env.reference(&r, vars),
                     };
                     return value.map_err(|d| d.at(span));
+                }
+                if trail.yields == Yields::Bonds && vars.kind(name).is_some_and(Kind::per_particle) {
+                    return vars.at_end(&r, env, trail);
                 }
                 // LAMMPS reads equal-style variables by way of their text
                 match vars.reference(&r, env, trail)? {

@@ -14,7 +14,7 @@ use super::command::Word;
 use super::reference::{RefKind, ValueRef};
 use super::text::within;
 use super::value::{Env, Value};
-use super::vars::Vars;
+use super::vars::{BOND_WORDS, Kind, Vars};
 use functions::Function;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use std::ops::Range;
@@ -239,7 +239,14 @@ fn collect_of(name: &str, vars: &Vars, out: &mut Vec<Dep>, seen: &mut Vec<String
     }
     seen.push(name.to_string());
     if let Some(e) = vars.expr(name) {
+        let before = out.len();
         e.collect(vars, out, seen);
+        if vars.kind(name) == Some(Kind::Bond) {
+            // These come from the bonds themselves.
+            let of_bond = |d: &Dep| matches!(d, Dep::Keyword(k) if BOND_WORDS.contains(&k.as_str()));
+            let own = out.split_off(before);
+            out.extend(own.into_iter().filter(|d| !of_bond(d)));
+        }
     }
     vars.inputs(name).for_each(|input| collect_of(input, vars, out, seen));
 }

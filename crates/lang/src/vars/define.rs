@@ -26,6 +26,7 @@ const STYLES: &[(&str, Kind)] = &[
     ("equal", Kind::Equal),
     ("atom", Kind::Atom),
     ("vector", Kind::Vector),
+    ("bond", Kind::Bond),
     ("timer", Kind::Timer),
     ("internal", Kind::Internal),
     ("python", Kind::Python),
@@ -139,7 +140,7 @@ impl Vars {
                 }
             }
             Kind::Format => self.read_format(&mut args)?,
-            Kind::Equal | Kind::Atom | Kind::Vector => {
+            Kind::Equal | Kind::Atom | Kind::Vector | Kind::Bond => {
                 args.clone().expect("a formula")?;
                 let (text, span) = joined(args.rest());
                 Data::Formula(self.formula(&text, span)?)

@@ -1,5 +1,6 @@
 //! The variable table: what there is, what has changed, and `next`.
 
+mod bonds;
 mod define;
 mod files;
 mod hash;
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+pub use bonds::{BOND_WORDS, Bonds};
 pub(super) use moving::Next;
 pub use partition::{Partition, Turn};
 pub(super) use text::Text;
@@ -50,6 +52,8 @@ pub enum Kind {
     Atom,
     /// `vector`: a formula that yields a global vector.
     Vector,
+    /// `bond`: a formula that yields one number per peridynamic bond.
+    Bond,
     /// `timer`: the moment of its definition.
     Timer,
     /// `internal`: a number that commands set.
@@ -75,6 +79,7 @@ impl Kind {
             Kind::Equal => "equal",
             Kind::Atom => "atom",
             Kind::Vector => "vector",
+            Kind::Bond => "bond",
             Kind::Timer => "timer",
             Kind::Internal => "internal",
             Kind::Python => "python",

@@ -101,6 +101,10 @@ impl Vars {
                     _ => None,
                 }
             }
+            Data::Formula(_) if variable.kind == Kind::Bond => {
+                let message = format!("variable `{name}` has one value per bond and cannot become text");
+                return fail(Code::WRONG_KIND, span, message);
+            }
             Data::Formula(_) | Data::Atoms(_) => {
                 let message = format!("variable `{name}` has one value per particle and cannot become text");
                 return fail(Code::WRONG_KIND, span, message);
@@ -156,6 +160,7 @@ impl Vars {
                 };
                 picked_particle(all, r, env)
             }
+            Data::Formula(e) if variable.kind == Kind::Bond => self.bond_value(e, r, env, trail),
             Data::Python(function) if r.index.is_empty() => {
                 let run = |trail: &mut Trail| self.called(function, Some(&r.name), r.span, env, trail);
                 match trail.inside(r, Yields::Any, run)? {
@@ -195,7 +200,7 @@ impl Vars {
 
 impl Trail {
     /// Evaluates a variable's formula below this trail.
-    fn inside<T>(
+    pub(super) fn inside<T>(
         &mut self,
         r: &ValueRef,
         yields: Yields,

@@ -1,11 +1,14 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
 use super::scatter::Scatter;
-use super::{Pair, Solid, bond_weights, pulled, reunion};
+use super::{Pair, Solid, bond_weights, breaking, pulled, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_peri::families::{Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable};
+use perigrain_peri::families::{
+    Criterion, Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable,
+};
 use perigrain_plan::{About, Level, Needs, Op, Span, Stage, Tick};
 use perigrain_styles::peri_view::view;
+use perigrain_styles::{BondFormula, FORMULAS};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{
     BOX, COLUMNS, DENSITY, F, FACTS, FAMILIES, Fields, KIND, LISTS, MASK, MASS, MEMO, MOLECULE, RADIUS,
@@ -28,11 +31,18 @@ pub struct Force {
     keys: Vec<((u16, u16), [Numbers; 3])>,
     /// Where the energy goes.
     tally: Key<f64>,
+    /// By what bonds break, where a formula decides.
+    formula: Option<BondFormula>,
 }
 
 impl Force {
     /// The op of a style.
-    pub fn new(style: Solid, declared: PmbTable, options: FamilyOptions, scatter: Scatter) -> Self {
+    pub fn new(
+        style: Solid,
+        declared: PmbTable,
+        options: FamilyOptions,
+        (scatter, formula): (Scatter, Option<BondFormula>),
+    ) -> Self {
         let name = format!("pair {}", style.name);
         let key = |types, name: &str| {
             let (style, name) = (style.name.to_string(), name.to_string());
@@ -42,13 +52,14 @@ impl Force {
         let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
         let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
         let tally = Key::new(style.name);
-        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally }
+        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally, formula }
     }
 }
 
 impl Op for Force {
     fn about(&self) -> About {
         let factors = if self.scatter.any() { COLUMNS } else { Fields::NONE };
+        let formula = if self.formula.is_some() { FORMULAS } else { Fields::NONE };
         About {
             level: Level::At(0),
             ..About::new(
@@ -66,7 +77,8 @@ impl Op for Force {
                             | MEMO
                             | DENSITY
                             | RADIUS
-                            | factors,
+                            | factors
+                            | formula,
                     )
                     .add(F)
                     .write(LISTS | FAMILIES | SITES | TALLY | FACTS)
@@ -82,9 +94,15 @@ impl Op for Force {
         } else if self.adapted != w.adaptations() {
             self.adapt(w)?;
         }
+        let due = t.step % self.style.breaking.every == 0;
+        let ratios = match &mut self.formula {
+            Some(formula) if due && !t.setup && !t.trial => formula(w)?,
+            _ => vec![],
+        };
         let Some(mut families) = w.families.take() else { return Ok(()) };
         families.law.dt = t.dt;
         families.implicit &= !t.setup;
+        (families.unjudged, families.ratios) = (!due, ratios);
         let mut sums = PeriTally::default();
         let mut atoms = std::mem::take(&mut w.tally.atom);
         if t.atom_energy {
@@ -145,14 +163,27 @@ impl Force {
         let Some(mut families) = w.families.take() else { return Ok(()) };
         let table = self.table(w)?;
         families.refresh(&view(w)?, &table);
+        families.work_limits = breaking::work_limits(&self.style, &self.broken_at(&table), w);
         w.families = Some(families).into();
         Ok(())
+    }
+
+    /// The coefficients in force with micro-moduli as lines say them, which fracture energies go with.
+    fn broken_at(&self, table: &PmbTable) -> PmbTable {
+        let (mut broken, types) = (table.clone(), table.types() as u16);
+        for (i, j) in (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j))) {
+            let (Some(own), Some(declared)) = (table.get(i, j), self.declared.get(i, j)) else { continue };
+            // Both were accepted before.
+            let _ = broken.set(i, j, PmbCoeff { c: declared.c, ..*own });
+        }
+        broken
     }
 
     /// Gives bonds their factors, which refreshed families may have of an earlier run.
     fn scatter(&self, w: &World, families: &mut Families) {
         let own = |i: usize| bond_weights::strength(&self.style, families, w.particles.kind[i], i);
-        let by_horizon: Vec<f64> = match families.spacing.is_empty() {
+        let by_stretch = self.options.criterion == Criterion::Stretch;
+        let by_horizon: Vec<f64> = match families.spacing.is_empty() || !by_stretch {
             true => vec![],
             false => (0..w.n()).map(own).collect(),
         };
@@ -213,6 +244,7 @@ impl Force {
             }
         };
         self.scatter(w, &mut families);
+        families.work_limits = breaking::work_limits(&self.style, &self.broken_at(&table), w);
         w.families = Some(families).into();
         self.mark(w)?;
         reunion::check_spheres(&self.style, w)

@@ -2,6 +2,7 @@
 
 mod bond_probe;
 mod bond_weights;
+mod breaking;
 mod eps;
 mod force;
 mod horizon;
@@ -20,6 +21,7 @@ mod ves;
 
 use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
 use bond_probe::BondProbe;
+use breaking::Breaking;
 pub use eps::PeriEps;
 use force::Force;
 pub use lines::of_bonds;
@@ -34,7 +36,7 @@ use perigrain_peri::families::{
     VolumeRule,
 };
 use perigrain_peri::law::{LawKind, Style};
-use perigrain_plan::Op;
+use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::words::Words;
@@ -61,6 +63,8 @@ struct Solid {
     calibrate: Calibrate,
     /// What bonds are weighed by one at a time.
     weights: BondWeights,
+    /// By what bonds break.
+    breaking: Breaking,
     /// Broken bonds still push.
     compress: bool,
     /// The rule of unloading that a line has said.
@@ -116,6 +120,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         volume: VolumeRule::Lammps,
         calibrate: Calibrate::No,
         weights: BondWeights::default(),
+        breaking: Breaking::default(),
         compress: false,
         unloading: None,
         lasting: vec![],
@@ -223,6 +228,7 @@ impl Solid {
             no_repulsion: self.no_repulsion,
             reunite: self.reunite.is_some_and(|r| r.0),
             weights: self.weights,
+            criterion: self.breaking.criterion,
         }
     }
 
@@ -268,7 +274,9 @@ impl Pair for Solid {
             mixes: false,
             balances: true,
             solids: types().filter(|&i| self.covers(i, i)).collect(),
-            unbreakable: types().find(endless).filter(|_| !self.materials.is_empty()),
+            unbreakable: types()
+                .find(endless)
+                .filter(|_| !self.materials.is_empty() && !self.breaking.criterion.by_itself()),
             coefficients: match self.law.kind {
                 // Peak, last stretch and energy belong together.
                 kind if kind.softens() => &[],
@@ -339,6 +347,7 @@ impl Pair for Solid {
         }
         let options = self.options(w);
         bond_weights::allowed(self, &options, w.settings.two_dimensional, span)?;
+        breaking::allowed(self, span)?;
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
@@ -347,11 +356,18 @@ impl Pair for Solid {
             style.law.shape_bonds();
         }
         style.law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(span))?;
+        breaking::moduli(&mut style, &self.table);
         cx.leave_out(
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
+        let breaking = &style.breaking;
+        let when = if breaking.every == 1 { When::Always } else { When::Every(breaking.every) };
+        let formula = match &breaking.formula {
+            Some(r) => Some(cx.bond_formula(r, Stage::PreForce, &when)?),
+            None => None,
+        };
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, (scatter, formula))))])
     }
 
     fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {

@@ -1,11 +1,11 @@
 //! `peri_modify`: options of peridynamic styles.
 
-use super::{Calibrate, Solid, bond_weights};
+use super::{Calibrate, Solid, bond_weights, breaking};
 use perigrain_base::diag::{Code, Result, Span, fail};
-use perigrain_lang::Args;
-use perigrain_peri::families::{BondWeights, Families, ForceUnit, Influence, VolumeRule};
-use perigrain_styles::BuildCx;
+use perigrain_lang::{Args, RefKind, ValueRef};
+use perigrain_peri::families::{BondWeights, Criterion, Families, ForceUnit, Influence, VolumeRule};
 use perigrain_styles::words::{At, Kind, Value, Words, alternatives, one_in};
+use perigrain_styles::{BuildCx, UseKind};
 use perigrain_world::Region;
 
 /// The words of `peri_modify`.
@@ -39,6 +39,18 @@ pub struct Line {
     repulsion: Option<bool>,
     #[word(keyword, placed)]
     family: Option<At<Members>>,
+    /// By what bonds break. Only bonds that are longer than at the start do, whatever the criterion.
+    #[word(keyword = "break", what = "break", shown = "stretch", placed)]
+    criterion: Option<At<Break>>,
+    /// Bonds are judged by a criterion other than their stretch at multiples of N steps.
+    #[word(
+        keyword,
+        name = "N",
+        what = "the number of steps from one judgement of bonds to the next",
+        from = 1,
+        shown = "1"
+    )]
+    every: Option<i64>,
 }
 
 /// What forces are.
@@ -126,6 +138,70 @@ enum Members {
     Broken,
 }
 
+/// By what bonds break.
+#[derive(Words)]
+#[word(what = "criterion of breaking")]
+enum Break {
+    /// Their stretch beyond s00, which alpha raises under compression.
+    Stretch,
+    /// The work done on them: a bond breaks at the one work at which a crack along a lattice plane costs the fracture energy
+    /// that its s00 stands for.
+    Energy,
+    /// The normal stress along them, as the mean of that at both ends.
+    Stress {
+        /// The strength.
+        #[word(name = "S", what = "the tensile strength", positive)]
+        most: f64,
+    },
+    /// The Green-Lagrange strain along them, as the mean of that at both ends.
+    Strain {
+        /// The largest strain.
+        #[word(name = "E", what = "the largest strain", positive)]
+        most: f64,
+    },
+    /// Von Mises' stress, as the mean of that at both ends.
+    Shear {
+        /// The strength.
+        #[word(name = "Y", what = "the largest von Mises stress", positive)]
+        most: f64,
+    },
+    /// A formula: a bond breaks where its value is 1 or more.
+    Formula {
+        /// A bond-style variable. Its formula may name the stretch `s` of the bond, its length `L` at the start, its direction `nx ny nz`
+        /// now, temperature `T1 T2` and damage `d1 d2` of its ends, and atom-style variables of an end, `v_NAME[1]` and `v_NAME[2]`.
+        #[word(name = "v_NAME", with = bond_variable, kind = Kind::Reference)]
+        of: ValueRef,
+    },
+}
+
+/// A bond-style variable with its `v_`; whether it is one is known when a run begins.
+fn bond_variable(args: &mut Args, cx: &BuildCx) -> Result<ValueRef> {
+    let word = args.expect("the bond-style variable after formula")?;
+    match ValueRef::parse(&word.text, word.span)? {
+        Some(r) if r.kind == RefKind::Variable && r.index.is_empty() => {
+            cx.uses(UseKind::Variable, &r.name);
+            Ok(r)
+        }
+        _ => {
+            let text = format!("`break formula` takes v_NAME of a bond-style variable, not `{}`", word.text);
+            fail(Code::WRONG_KIND, word.span, text)
+        }
+    }
+}
+
+impl From<&Break> for Criterion {
+    fn from(named: &Break) -> Self {
+        match *named {
+            Break::Stretch => Self::Stretch,
+            Break::Energy => Self::Work,
+            Break::Stress { most } => Self::Stress(most),
+            Break::Strain { most } => Self::Strain(most),
+            Break::Shear { most } => Self::Shear(most),
+            Break::Formula { .. } => Self::Formula,
+        }
+    }
+}
+
 /// Reads the words of a `peri_modify`.
 ///
 /// # Errors
@@ -168,6 +244,11 @@ pub fn read(style: &mut Solid, args: &mut Args, cx: &BuildCx) -> Result<()> {
     if let Some(at) = line.family {
         style.reunite = Some((at.value == Members::Broken, at.span));
     }
+    if let Some(at) = line.criterion {
+        breaking::choose(style, (&at.value).into(), at.span, cx)?;
+        style.breaking.formula = if let Break::Formula { of } = at.value { Some(of) } else { None };
+    }
+    style.breaking.every = line.every.unwrap_or(style.breaking.every);
     Ok(())
 }
 

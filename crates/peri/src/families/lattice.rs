@@ -170,6 +170,10 @@ pub struct LatticeBody {
     /// Bonds that were the least stretched ones of their cells' families.
     #[serde(skip)]
     pub slackest: Slackest,
+    /// The work done on each bond, over both volumes, and its tension in the last step that advanced, where bonds break by that:
+    /// bond `e` of a chunk's eight cells from `(chunk * stencil.len() + e) * LANES` on.
+    #[serde(default)]
+    pub work: Vec<[f64; 2]>,
     /// Factors of cells.
     #[serde(default)]
     pub scatter: Scatter,
@@ -371,7 +375,7 @@ impl LatticeBody {
     pub fn bytes(&self) -> usize {
         let doubles = self.u[0].len() + self.u[1].len() + self.tables.len() + self.cell_volume.len();
         let chunk = 4 * 4 + 2;
-        8 * (doubles + self.broken.capacity())
+        8 * (doubles + self.broken.capacity() + 2 * self.work.len())
             + self.particle.len() * 4
             + self.alive.len()
             + self.intact.len() * chunk

@@ -106,6 +106,9 @@ pub struct ListBody {
     /// What is known of bonds near their limits.
     #[serde(skip)]
     pub limits: Limits,
+    /// The work done on each bond, over both volumes, and its tension in the last step that advanced, where bonds break by that.
+    #[serde(default)]
+    pub work: Vec<[f64; 2]>,
     /// Factors of records.
     #[serde(default)]
     pub scatter: Scatter,
@@ -227,6 +230,7 @@ impl ListBody {
             + 4 * (self.partner.len() + self.back.len() + self.owner.len())
             + self.group_kind.len()
             + 8 * (self.close.len() + self.inverse.len() + self.influence.len() + self.own_weight.len())
+            + 16 * self.work.len()
             + 8 * (self.limits.least.len() + self.limits.next.len() + self.limits.highest.len())
             + self.state.bytes()
             + self.tiles.bytes()

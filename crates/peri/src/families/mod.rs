@@ -4,6 +4,7 @@ pub(crate) mod bond;
 pub mod bond_weights;
 pub(crate) mod cell;
 pub(crate) mod cells;
+mod criterion;
 pub(crate) mod excluded;
 mod free;
 mod kin;
@@ -28,6 +29,7 @@ pub use bond_weights::{BondWeights, Factors, Weighed};
 pub use cell::Edges;
 pub(crate) use cell::{BoxStrain, Cell};
 pub use cells::Cells;
+pub use criterion::Criterion;
 pub use excluded::Excluded;
 pub(crate) use free::Moved;
 pub use law::Law;
@@ -51,6 +53,9 @@ pub struct Families {
     /// Coefficients by type of bond − 1, where families are what a table of bonds says (`bond_style bpm/peri`).
     #[serde(default)]
     pub of_bonds: Vec<PmbCoeff>,
+    /// The work that breaks a bond by pair of types (row by row) [energy/volume²], if bonds break by that.
+    #[serde(default)]
+    pub work_limits: Vec<f64>,
     /// The change of that table that families have taken in last.
     #[serde(default)]
     pub seen: u64,
@@ -108,6 +113,13 @@ pub struct Families {
     /// Evaluations that do not advance let bonds flow, soften and relax as a step would, and forget it.
     #[serde(skip)]
     pub implicit: bool,
+    /// Of each living bond the ratio of what it bears to what it can bear, in the order of [`Families::living`], where a formula
+    /// gives that.
+    #[serde(skip)]
+    pub ratios: Vec<f64>,
+    /// Bonds are not judged in this step, where another criterion than their stretch decides.
+    #[serde(skip)]
+    pub unjudged: bool,
     /// Take kernels of four lanes even where the processor has eight: to compare them.
     #[serde(skip)]
     pub four_lanes: bool,

@@ -1,6 +1,7 @@
 //! Everything about families that is not a coefficient.
 
 use crate::families::bond_weights::BondWeights;
+use crate::families::criterion::Criterion;
 use crate::families::view::PeriView;
 
 /// How the volume of a partner near the horizon counts (`peri_modify volume`).
@@ -85,6 +86,9 @@ pub struct FamilyOptions {
     /// What bonds are weighed by one at a time.
     #[serde(default)]
     pub weights: BondWeights,
+    /// By what bonds break.
+    #[serde(default)]
+    pub criterion: Criterion,
 }
 
 /// Bond length changes below this count as none under `compat lammps`: an absolute length.
@@ -127,6 +131,7 @@ impl FamilyOptions {
             no_repulsion: false,
             reunite: false,
             weights: BondWeights::default(),
+            criterion: Criterion::default(),
         }
     }
 }

@@ -23,6 +23,12 @@ impl Scatter {
         Self { strength, weakest, stiffness: at_sites(stiffness) }
     }
 
+    /// Other factors on critical stretches, of the particles at the sites.
+    pub(crate) fn set_strengths(&mut self, particle: &[u32], strength: &[f64]) {
+        let stiffness = std::mem::take(&mut self.stiffness);
+        *self = Self { stiffness, ..Self::new(particle, strength, &[]) };
+    }
+
     /// Whether there is a factor for each site, or none.
     pub(super) fn fits(&self, sites: usize) -> bool {
         [&self.strength, &self.stiffness].into_iter().all(|list| list.is_empty() || list.len() == sites)

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // a test fails by panicking
 
 mod cauchy;
+mod criteria;
 mod cuts;
 mod endurance;
 mod flying;

@@ -1,6 +1,6 @@
 //! Whether a body on a lattice fits together: rows, stencil, bits of bonds, columns.
 
-use super::{Fault, at_home, equal, must, numbers, states, states_are_numbers};
+use super::{Fault, at_home, equal, must, numbers, states, states_are_numbers, works};
 use crate::families::Law;
 use crate::families::lattice::{CONSTANTS, LANES, LatticeBody, MIXED, PAD, RowMotion, staggered};
 use crate::setup::lattice::{Pruned, half_stencil, prune, reach};
@@ -21,6 +21,7 @@ impl LatticeBody {
         let (cells, chunks) = (self.particle.len(), self.intact.len());
         states(&self.state, &law.kind, (cells, PAD, self.alive.len() * LANES))?;
         states_are_numbers(&self.state)?;
+        works(&self.work, self.alive.len() * LANES)?;
         numbers("displacements", self.u.iter().flatten())?;
         numbers("constants", self.tables.iter().chain(self.pairs.as_flattened()))?;
         numbers("volumes of cells", &self.cell_volume)?;

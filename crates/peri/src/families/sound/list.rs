@@ -1,6 +1,6 @@
 //! Whether bonds kept as a list fit together: records in slabs, groups of bonds, and the ways back.
 
-use super::{Fault, equal, must, numbers, states, states_are_numbers};
+use super::{Fault, equal, must, numbers, states, states_are_numbers, works};
 use crate::families::Law;
 use crate::families::list::{GROUP, ListBody};
 use perigrain_base::math::vec3::Vec3;
@@ -22,6 +22,7 @@ impl ListBody {
         let n = self.record.len();
         states(&self.state, &law.kind, (n, 0, self.partner.len()))?;
         states_are_numbers(&self.state)?;
+        works(&self.work, self.partner.len())?;
         numbers("former displacements", self.last.as_flattened())?;
         let constants =
             self.pairs.iter().flat_map(|p| [&p.c, &p.shape, &p.s00, &p.alpha, &p.horizon, &p.yields]);

@@ -8,9 +8,9 @@ mod lattice;
 mod list;
 
 use crate::cauchy::Continuum;
-use crate::families::Families;
 use crate::families::lattice::{LANES, PAD};
 use crate::families::law::Law;
+use crate::families::{Criterion, Families};
 use crate::law::state::SiteState;
 use crate::law::style::Style;
 use perigrain_base::diag::{Code, Diagnostic, Result};
@@ -54,6 +54,9 @@ impl Families {
             equal(&format!("the number of {what} is"), len, n)?;
         }
         numbers("volumes of families", &self.family_volume)?;
+        let limits = self.work_limits.len();
+        let known = limits == types * types || limits == 0 && self.options.criterion != Criterion::Work;
+        must(known, "its limits of work are not those of its pairs of types")?;
         must(self.spacing.iter().all(|h| h.is_finite() && *h > 0.0), "a particle has no spacing")?;
         let reference = self.reference.as_deref().unwrap_or(x0);
         for (k, body) in self.lattices.iter().enumerate() {
@@ -130,6 +133,12 @@ impl Families {
 /// A fault if one of some numbers is none (NaN): it would go into every sum.
 fn numbers<'a>(what: &str, all: impl IntoIterator<Item = &'a f64>) -> Fault {
     must(!all.into_iter().any(|x| x.is_nan()), &format!("one of the {what} is no number"))
+}
+
+/// A fault unless there is a work for each of so many bonds, or for none.
+fn works(work: &[[f64; 2]], bonds: usize) -> Fault {
+    must(work.is_empty() || work.len() == bonds, "its works and bonds differ in number")?;
+    numbers("works of bonds", work.as_flattened())
 }
 
 /// Whether what sites and bonds remember are numbers.
