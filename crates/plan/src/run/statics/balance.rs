@@ -325,7 +325,8 @@ impl<'a> Balance<'a> {
         let (size, goal) = (SMALL * self.body.size, forcing * norm(load));
         let (blocks, network) = (std::mem::take(&mut self.blocks), std::mem::take(&mut self.body.network));
         let parts_of = |blocks: &Blocks| Coarse::of_network(&network, blocks);
-        let coarse = self.coarse.take();
+        // Clusters from the first step on: load steps after load steps use them.
+        let coarse = self.coarse.take().or_else(|| (network.bonds() > 0).then(|| parts_of(&blocks)));
         let me = RefCell::new(&mut *self);
         let (failed, products) = (RefCell::new(None), RefCell::new(0));
         let product = |p: &[Six], out: &mut [Six]| {
