@@ -42,6 +42,7 @@ mod staggering;
 mod sweeping;
 mod table;
 mod timer;
+mod tiring;
 mod unused;
 pub mod whole;
 

@@ -21,6 +21,7 @@ mod disk;
 mod dumps;
 mod english;
 mod examples;
+mod fatigue;
 mod found;
 mod fuzz_loop;
 #[path = "geometry/main.rs"]

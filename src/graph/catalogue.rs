@@ -35,7 +35,7 @@ pub const DECLARATIONS: [&str; 20] = [
 ];
 
 /// Commands of the session and of the cursor through the deck, which stand in no table.
-pub const SESSION_COMMANDS: [&str; 27] = [
+pub const SESSION_COMMANDS: [&str; 28] = [
     "print",
     "log",
     "echo",
@@ -56,6 +56,7 @@ pub const SESSION_COMMANDS: [&str; 27] = [
     "rerun",
     "minimize",
     "statics",
+    "fatigue",
     "shell",
     "info",
     "timer",

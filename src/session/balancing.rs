@@ -10,7 +10,7 @@ use perigrain_base::math::vec3::sub;
 use perigrain_bonded::stiffness::Stiffness;
 use perigrain_fixes::AtRest;
 use perigrain_lang::Command;
-use perigrain_peri::families::ForceUnit;
+use perigrain_peri::families::{Criterion, ForceUnit};
 use perigrain_plan::explain;
 use perigrain_plan::run::statics::{self, Body, Breaking, Control, Goal, Ledger, Numbers, Scene, Solver};
 use perigrain_statics::network::Network;
@@ -148,7 +148,7 @@ impl Session {
     }
 
     /// Refuses what load steps cannot be made with, and notes what does nothing in them.
-    fn check_statics(&mut self, span: Span) -> Result<()> {
+    pub(super) fn check_statics(&mut self, span: Span) -> Result<()> {
         let laws = self.graph.pair.as_ref().map(|node| (node.pair.facts(), node.span));
         if let Some((facts, at)) = laws.filter(|(facts, _)| !facts.balances) {
             let text = format!("`statics` does not find equilibria under pair_style {}", facts.name);
@@ -210,7 +210,13 @@ impl Session {
         };
         let (w, watch) = (&mut self.world, self.watch.as_mut());
         let pieces_stand = goal.solver == Solver::Newton;
-        let body = move |w: &World| body(w, (held, led), pieces_stand, span);
+        let follows = goal.control == Control::Damage;
+        let body = move |w: &World| {
+            if follows {
+                known_limits(w, span)?;
+            }
+            body(w, (held, led), pieces_stand, span)
+        };
         let scene = Scene { springs, ratio };
         let outcome = statics::statics(&mut plan, w, watch, (body, scene), goal, &mut note);
         (self.world.clock.running, self.world.clock.named_dt) = (false, None);
@@ -233,7 +239,7 @@ impl Session {
     }
 
     /// The components of each particle that do not move freely, and those of them that stand on a path, one bit each.
-    fn held(&self) -> (Vec<u8>, Vec<u8>) {
+    pub(super) fn held(&self) -> (Vec<u8>, Vec<u8>) {
         let w = &self.world;
         let (mut free, mut held, mut led) = (vec![0u8; w.n()], vec![0u8; w.n()], vec![0u8; w.n()]);
         let bits = |components: [bool; 3]| (0..3).map(|d| u8::from(components[d]) << d).sum::<u8>();
@@ -262,7 +268,12 @@ impl Session {
 ///
 /// # Errors
 /// Nothing that moves; pieces that nothing holds, unless they need not stand.
-fn body(w: &World, (held, led): (Vec<u8>, Vec<u8>), pieces_stand: bool, span: Span) -> Result<Body> {
+pub(super) fn body(
+    w: &World,
+    (held, led): (Vec<u8>, Vec<u8>),
+    pieces_stand: bool,
+    span: Span,
+) -> Result<Body> {
     if held.iter().all(|held| held & 0b111 == 0b111) {
         let text = "no particle moves freely in these load steps";
         let d = Diagnostic::error(Code::INCOMPLETE, span, text);
@@ -303,14 +314,28 @@ fn weights(w: &World) -> Vec<f64> {
     (0..w.n()).map(|i| volume(i).unwrap_or(1.0)).collect()
 }
 
+/// Refuses criteria whose ratio is known only where bonds may break: damage control follows it.
+///
+/// # Errors
+/// A formula.
+fn known_limits(w: &World, span: Span) -> Result<()> {
+    let criterion = w.families.as_ref().map(|families| families.options.criterion);
+    if criterion != Some(Criterion::Formula) {
+        return Ok(());
+    }
+    let text = "`control damage` does not go with `peri_modify break formula`: a formula is evaluated only where bonds may break";
+    let d = Diagnostic::error(Code::CONFLICT, span, text);
+    Err(d.help("remove `control damage`, or choose another criterion of `peri_modify break`").into())
+}
+
 /// The largest load ratio of bonds.
-fn ratio(w: &World) -> f64 {
+pub(super) fn ratio(w: &World) -> f64 {
     let Some(families) = w.families.as_ref() else { return 0.0 };
     view(w).map_or(0.0, |view| families.load_ratio(&view))
 }
 
 /// The living bonds of families with their stiffnesses as bonds by themselves.
-fn springs(w: &World) -> Network {
+pub(super) fn springs(w: &World) -> Network {
     let (mut ends, mut normal) = (vec![], vec![]);
     if let Some(families) = &*w.families {
         families.each_spring(&w.particles.kind, &w.particles.volume, |pair, k| {

@@ -9,6 +9,7 @@ pub use super::restarting::{ReadRestart, WriteRestart};
 pub use super::running::Run;
 pub use super::sweeping::Sweep;
 pub use super::timer::TimerLine;
+pub use super::tiring::Tiring;
 
 use super::Session;
 use crate::graph::declaration::Context;

@@ -167,7 +167,7 @@ impl Session {
         self.plans.leave_open(span.unwrap_or_default(), format!("left out: {why}"));
         refused.causes(raw, e);
         match cmd.map(|c| c.name.text.as_str()) {
-            Some("run" | "minimize" | "statics" | "rerun") => self.unsee(false),
+            Some("run" | "minimize" | "statics" | "fatigue" | "rerun") => self.unsee(false),
             Some(name) if self.planning() && self.graph.tables.command(name).is_some() => {
                 let unseen = &mut self.world.unseen;
                 (unseen.particles, unseen.vague) = (true, true);

@@ -19,6 +19,7 @@ const OWN: &[(&str, Carry)] = &[
     }),
     ("minimize", |s, _, cmd| done(s.minimize(cmd))),
     ("statics", |s, _, cmd| done(s.statics(cmd))),
+    ("fatigue", |s, _, cmd| done(s.fatigue(cmd))),
     ("rerun", |s, _, cmd| done(s.rerun(cmd))),
     ("write_dump", |s, _, cmd| done(s.write_dump(cmd))),
     ("write_restart", |s, _, cmd| done(s.write_restart(cmd))),

@@ -51,11 +51,17 @@ impl Families {
         if agreed.is_some_and(|agreed| agreed.breaks || agreed.strained) {
             broken = broken_everywhere(broken);
         }
+        self.tear(view, cell, &broken, Moved::Now);
+        self.scratch.broken = broken;
+    }
+
+    /// Breaks bonds, those of each body together and those of the list last; what they remember belongs to the displacements `moved`.
+    pub(super) fn tear(&mut self, view: &PeriView, cell: &Cell, broken: &[Broken], moved: Moved) {
         let (kind, frees) = (self.law.kind, self.law.kind.frees(self.options.compat_lammps));
         let mut bonds = std::mem::take(&mut self.scratch.candidates);
         let mut ends = std::mem::take(&mut self.scratch.ends);
         ends.clear();
-        let mut rest = &broken[..];
+        let mut rest = broken;
         for (k, body) in self.lattices.iter_mut().enumerate() {
             let own;
             (own, rest) = rest.split_at(rest.partition_point(|broken| broken.body <= k));
@@ -63,7 +69,7 @@ impl Families {
             bonds.extend(own.iter().map(|broken| broken.bond));
             body.break_all(&bonds);
             for c in bonds.iter().filter(|_| frees) {
-                body.free(c.ends[0] as usize, c.bond as usize, &kind, Moved::Now);
+                body.free(c.ends[0] as usize, c.bond as usize, &kind, moved);
             }
             ends.extend(bonds.iter().map(|c| c.ends.map(|cell| body.particle[cell as usize])));
         }
@@ -71,10 +77,10 @@ impl Families {
         bonds.extend(rest.iter().map(|broken| broken.bond));
         self.list.break_all(&bonds);
         for c in bonds.iter().filter(|_| frees) {
-            self.list.free(c.bond as usize, &self.law, cell, Moved::Now);
+            self.list.free(c.bond as usize, &self.law, cell, moved);
         }
         ends.extend(bonds.iter().map(|c| c.ends.map(|record| self.list.particle[record as usize])));
-        for (&[i, j], broken) in ends.iter().zip(&broken) {
+        for (&[i, j], broken) in ends.iter().zip(broken) {
             self.damaged[i as usize] = true;
             self.damaged[j as usize] = true;
             self.add_broken(view, (i, j), broken.square);
@@ -82,7 +88,7 @@ impl Families {
         if kind.correspondence {
             self.reshape(view, &ends);
         }
-        (self.scratch.broken, self.scratch.candidates, self.scratch.ends) = (broken, bonds, ends);
+        (self.scratch.candidates, self.scratch.ends) = (bonds, ends);
     }
 
     /// Finds the bonds that break, body by body, those of the list last; see [`candidates`] for `list`.

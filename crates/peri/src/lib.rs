@@ -12,7 +12,7 @@ pub mod calibration;
 mod cauchy;
 pub mod conduction;
 mod contact;
-mod criteria;
+pub mod criteria;
 mod cut;
 pub mod damage;
 mod energy;

@@ -2,7 +2,7 @@
 
 use crate::breaking::{Bonds, banded, measure};
 use crate::families::list::ListBody;
-use crate::families::{Cell, Families, FamilyOptions, PeriView};
+use crate::families::{Cell, Criterion, Families, FamilyOptions, PeriView};
 use perigrain_base::par;
 use std::ops::Range;
 
@@ -10,11 +10,14 @@ use std::ops::Range;
 type Pulled = (usize, f64, f64, f64);
 
 impl Families {
-    /// The largest load ratio ρ of the bonds that live: stretch over critical stretch, as breaking judges it from this evaluation
-    /// and the last one that advanced. Bonds break where it is above 1. It is 0 where no bond is pulled or none can break;
+    /// The largest load ratio ρ of the bonds that live: stretch over critical stretch, or what another criterion compares, as
+    /// breaking judges it from this evaluation and the last one that advanced. Bonds break where it is above 1. It is 0 where no bond is pulled or none can break;
     /// bonds of particles that are spared do not count.
     pub fn load_ratio(&self, view: &PeriView) -> f64 {
         let (cell, options) = (self.cell(view), &self.options);
+        if options.criterion != Criterion::Stretch {
+            return self.largest_ratio(view, &cell);
+        }
         let lasts = |p: u32| self.lasting.get(p as usize).copied().unwrap_or(false);
         let mut most = 0.0;
         for body in &self.lattices {

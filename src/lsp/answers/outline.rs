@@ -103,6 +103,7 @@ fn of_line(file: &File, line: &perigrain_lang::RawLine) -> Vec<Symbol> {
         "run",
         "minimize",
         "statics",
+        "fatigue",
         "rerun",
         "read_data",
         "read_restart",
@@ -112,7 +113,7 @@ fn of_line(file: &File, line: &perigrain_lang::RawLine) -> Vec<Symbol> {
         "include",
     ];
     if acts.contains(&first.text.as_str()) {
-        let kind = if ["run", "minimize", "statics", "rerun"].contains(&first.text.as_str()) {
+        let kind = if ["run", "minimize", "statics", "fatigue", "rerun"].contains(&first.text.as_str()) {
             EVENT
         } else {
             STRING

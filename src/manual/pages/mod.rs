@@ -55,6 +55,7 @@ pub const COMMANDS: &[Entry] = &[
     session::RUN,
     session::MINIMIZE,
     session::STATICS,
+    session::FATIGUE,
     session::PRINT,
     session::LOG,
     session::ECHO,

@@ -4,7 +4,7 @@ use super::Entry;
 use crate::graph::heads;
 use crate::session::lines::{
     CommStyle, Compatibility, Echoing, Info, Logging, Minimize, Package, Partition, Print, Run, Statics,
-    Suffix, Sweep, TimerLine,
+    Suffix, Sweep, TimerLine, Tiring,
 };
 use perigrain_styles::Doc;
 use perigrain_styles::words::{Grammar, Syntax, Words};
@@ -88,6 +88,28 @@ pub(super) const STATICS: Entry = (
             name, and so are bodies of which nothing holds a piece along some axis, but for `solver adr`.",
         example: "fix motion plate nve\nfix base foot setforce 0.0 0.0 0.0\nregion far block INF INF 0.003 INF INF INF units box\n\
             group far region far\nfix pull far move linear 0.0 1.0e-3 0.0 units box\nstatics 2 time 1.0e-6",
+    },
+);
+
+pub(super) const FATIGUE: Entry = (
+    "fatigue",
+    Doc {
+        syntax: Syntax::Behind(Tiring::GRAMMAR),
+        summary: "Lets peridynamic bonds tire under a load that repeats: cracks over millions of cycles.",
+        text: "The present loads are the upper ones of each cycle; where `statics` has brought them up, this is the place to begin. \
+            Each bond has a life λ, 1 at first, of which a cycle takes A ε^m, ε being (1 − R) times its stretch at the upper load, 0 in \
+            compression (Silling & Askari 2014). `init` says how, away from cracks, and `grow` where an end of the bond or a partner of one has \
+            lost half of its family; with A1 = 0 no crack begins.\n\n\
+            The body is balanced as by `statics`; bonds beyond their limit break there one after another. Then as many cycles pass as the \
+            bond that tires first bears. It breaks, with those of which `batch` or less is left, and the body is balanced again from \
+            where it is, until `N` cycles have passed. `batch 0` breaks one bond at a time, with those that a symmetry maps to it. Each \
+            equilibrium is a step of the clock, at which thermo output, dumps and `fix print` come, but takes no time, so that nothing moves; after `M` of them it ends in \
+            equilibrium with fewer cycles. Lives are kept for a further `fatigue` and in restart files.\n\n\
+            The log ends with a table: cycles, bonds that broke beyond their limit and by the end of their lives, the largest stretch; `file` has the \
+            first five columns with all digits. What `statics` cannot balance is refused. Bonds of `peri_modify nofail` do not tire.",
+        example: "fix motion plate nve\nfix base foot setforce 0.0 0.0 0.0\nregion far block INF INF 0.003 INF INF INF units box\n\
+            group far region far\nfix pull far move linear 0.0 1.0e-3 0.0 units box\nstatics 2 time 1.0e-6\n\
+            fatigue init 1.0e9 4 1.0e-5 grow 1.0e10 4 cycles 1.0e6",
     },
 );
 

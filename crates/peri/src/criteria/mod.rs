@@ -4,6 +4,7 @@
 //! ([`Families::breaking_share`]). Bonds are judged one by one, after the forces of a step that advances.
 
 mod ends;
+pub mod fatigue;
 mod tension;
 mod work;
 
@@ -14,6 +15,7 @@ use crate::families::{Candidate, Cell, Criterion, Families, PeriView};
 use crate::shares::{LIST, square};
 use ends::Ends;
 use perigrain_base::par::{self, Shared};
+use tension::{InList, OnLattice, Rules};
 
 /// Records whose bonds are judged together.
 const PART: usize = 64;
@@ -31,43 +33,103 @@ struct Stretched {
     strength: f64,
 }
 
+/// What bonds are judged by, at the places of the last evaluation of forces.
+struct Judge<'a> {
+    families: &'a Families,
+    view: &'a PeriView<'a>,
+    /// What their ends bear, where that counts.
+    ends: Option<Ends>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(families: &'a Families, view: &'a PeriView) -> Self {
+        let ends = families.options.criterion.of_sites().then(|| Ends::of(families, view));
+        Self { families, view, ends }
+    }
+
+    /// The ratio of a bond on which this work has been done; 0 where one of its ends is spared.
+    fn ratio(&self, bond: &Stretched, work: impl Fn() -> f64) -> f64 {
+        let Self { families, view, ends } = self;
+        let spared = |p: &usize| families.lasting.get(*p).copied().unwrap_or(false);
+        if bond.ends.iter().any(spared) {
+            return 0.0;
+        }
+        match (ends, families.options.criterion) {
+            (Some(ends), Criterion::Stress(most) | Criterion::Strain(most) | Criterion::Shear(most)) => {
+                ends.measure(families, view, bond.ends) / (most * bond.strength)
+            }
+            (None, Criterion::Work) => {
+                let [a, b] = bond.ends.map(|p| usize::from(view.kind[p]) - 1);
+                let limit = families.work_limits[a * families.table.types() + b];
+                work() / (limit * bond.strength * bond.strength)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
 impl Families {
     /// Finds the bonds whose ratio is 1 or more, body by body, those of the list last.
     pub(crate) fn find_by_criterion(&self, view: &PeriView, cell: &Cell, broken: &mut Vec<Broken>) {
         if self.unjudged {
             return;
         }
-        let criterion = self.options.criterion;
-        if criterion == Criterion::Formula {
+        if self.options.criterion == Criterion::Formula {
             return self.find_by_ratio(view, cell, broken);
         }
-        let ends = criterion.of_sites().then(|| Ends::of(self, view));
-        let types = self.table.types();
-        let ratio = |bond: &Stretched, work: &[[f64; 2]]| match (&ends, criterion) {
-            (Some(ends), Criterion::Stress(most) | Criterion::Strain(most) | Criterion::Shear(most)) => {
-                ends.measure(self, view, bond.ends) / (most * bond.strength)
-            }
-            (None, Criterion::Work) => {
-                let [a, b] = bond.ends.map(|p| usize::from(view.kind[p]) - 1);
-                let limit = self.work_limits[a * types + b] * bond.strength * bond.strength;
-                work[bond.place][0] / limit
-            }
-            _ => 0.0,
-        };
-        let spared = |p: usize| self.lasting.get(p).copied().unwrap_or(false);
-        let judge = |bond: &Stretched, work: &[[f64; 2]]| -> Option<f64> {
-            let ratio = ratio(bond, work);
-            (ratio >= 1.0 && !bond.ends.iter().any(|p| spared(*p))).then_some(ratio)
+        let judge = Judge::new(self, view);
+        let breaks = |bond: &Stretched, work: &[[f64; 2]]| -> Option<f64> {
+            Some(judge.ratio(bond, || work[bond.place][0])).filter(|ratio| *ratio >= 1.0)
         };
         for (k, body) in self.lattices.iter().enumerate() {
-            for (bond, ends) in of_lattice(body, &|bond| judge(bond, &body.work)) {
+            for (bond, ends) in of_lattice(body, &|bond| breaks(bond, &body.work)) {
                 broken.push(Broken { body: k, bond, square: square(view, ends) });
             }
         }
         let list = &self.list;
-        for (bond, ends) in of_list(list, cell, &|bond| judge(bond, &list.work)) {
+        for (bond, ends) in of_list(list, cell, &|bond| breaks(bond, &list.work)) {
             broken.push(Broken { body: LIST, bond, square: square(view, ends) });
         }
+    }
+
+    /// The largest ratio of a bond at the places of the last evaluation, which need not have advanced. 0 under a formula, which is
+    /// evaluated only where bonds may break.
+    pub(crate) fn largest_ratio(&self, view: &PeriView, cell: &Cell) -> f64 {
+        if self.unjudged {
+            return 0.0;
+        }
+        let judge = Judge::new(self, view);
+        let rules = Rules { law: &self.law, options: &self.options, table: &self.table };
+        let bodies: Vec<OnLattice> =
+            self.lattices.iter().map(|body| OnLattice::new(&rules, body, view)).collect();
+        let listed = InList { rules: &rules, list: &self.list, cell };
+        let mut most = 0.0f64;
+        self.each_living(|body, sites, bond, ends| {
+            let ([i, j], ends) = (sites, ends.map(|p| p as usize));
+            let ratio = match self.lattices.get(body).zip(bodies.get(body)) {
+                Some((own, tensions)) if own.z(1, i, j, bond) > 0.0 => {
+                    let place = own.place_of(i, bond);
+                    let bond_here = Stretched { sites, ends, place, strength: own.scatter.strength(sites) };
+                    judge.ratio(&bond_here, || {
+                        let mut work = own.work.get(place).copied().unwrap_or_default();
+                        let before = tensions.length_before(i, j, bond);
+                        work::add(&mut work, tensions.tension(i, j, bond), before);
+                        work[0]
+                    })
+                }
+                None if self.list.z(false, i, j, cell).0 > 0.0 => {
+                    let strength = self.list.scatter.strength(sites);
+                    judge.ratio(&Stretched { sites, ends, place: bond, strength }, || {
+                        let mut work = self.list.work.get(bond).copied().unwrap_or_default();
+                        work::add(&mut work, listed.tension(bond), listed.length_before(bond));
+                        work[0]
+                    })
+                }
+                _ => 0.0,
+            };
+            most = most.max(ratio);
+        });
+        most
     }
 }
 

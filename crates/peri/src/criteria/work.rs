@@ -50,7 +50,7 @@ impl Families {
 }
 
 /// Adds ½ (T + T') (l' − l), and keeps T'.
-fn add([work, last]: &mut [f64; 2], [tension, length]: [f64; 2], before: f64) {
+pub(super) fn add([work, last]: &mut [f64; 2], [tension, length]: [f64; 2], before: f64) {
     *work += 0.5 * (*last + tension) * (length - before);
     *last = tension;
 }

@@ -174,6 +174,9 @@ pub struct LatticeBody {
     /// bond `e` of a chunk's eight cells from `(chunk * stencil.len() + e) * LANES` on.
     #[serde(default)]
     pub work: Vec<[f64; 2]>,
+    /// What is left of the life of each bond, in the same order, once bonds have tired; empty before.
+    #[serde(default)]
+    pub life: Vec<f64>,
     /// Factors of cells.
     #[serde(default)]
     pub scatter: Scatter,
@@ -375,7 +378,7 @@ impl LatticeBody {
     pub fn bytes(&self) -> usize {
         let doubles = self.u[0].len() + self.u[1].len() + self.tables.len() + self.cell_volume.len();
         let chunk = 4 * 4 + 2;
-        8 * (doubles + self.broken.capacity() + 2 * self.work.len())
+        8 * (doubles + self.broken.capacity() + 2 * self.work.len() + self.life.len())
             + self.particle.len() * 4
             + self.alive.len()
             + self.intact.len() * chunk

@@ -109,6 +109,9 @@ pub struct ListBody {
     /// The work done on each bond, over both volumes, and its tension in the last step that advanced, where bonds break by that.
     #[serde(default)]
     pub work: Vec<[f64; 2]>,
+    /// What is left of the life of each bond, once bonds have tired; empty before.
+    #[serde(default)]
+    pub life: Vec<f64>,
     /// Factors of records.
     #[serde(default)]
     pub scatter: Scatter,
@@ -231,6 +234,7 @@ impl ListBody {
             + self.group_kind.len()
             + 8 * (self.close.len() + self.inverse.len() + self.influence.len() + self.own_weight.len())
             + 16 * self.work.len()
+            + 8 * self.life.len()
             + 8 * (self.limits.least.len() + self.limits.next.len() + self.limits.highest.len())
             + self.state.bytes()
             + self.tiles.bytes()

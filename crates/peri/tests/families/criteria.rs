@@ -179,3 +179,78 @@ fn one_bond_breaks_at_its_work() {
         }
     }
 }
+
+/// Load ratios of a bond that is only looked at: its work over what breaks it, and for what its ends bear as much.
+#[test]
+fn ratios_are_those_that_break() {
+    for (criterion, layout) in CRITERIA.into_iter().flat_map(|c| [(c, Layout::Auto), (c, Layout::List)]) {
+        // An even strain of a block along x; breaking begins where the ratio has come to 1.
+        let mut s = block("pmb", criterion, layout, [5, 4, 4]);
+        s.forces(true);
+        let mut pull = |strain: f64, advance: bool| {
+            s.x.iter_mut().zip(&s.x0).for_each(|(x, x0)| x[0] = x0[0] * (1.0 + strain));
+            s.forces(advance);
+            let families = s.families.as_ref().unwrap();
+            (families.load_ratio(&s.view()), families.live_bonds())
+        };
+        let whole = pull(0.0, true).1;
+        let (half, _) = pull(1e-4, false);
+        assert!(half > 0.0 && half < 1.0, "{criterion:?} {half}");
+        // Work goes with the square of a strain, stresses nearly with it.
+        let mut at = 1e-4 * if criterion == Criterion::Work { half.sqrt() } else { half }.recip();
+        for _ in 0..20 {
+            let (ratio, _) = pull(at, false);
+            at /= if criterion == Criterion::Work { ratio.sqrt() } else { ratio };
+        }
+        // Limits of strains bend: some 1e-6 beyond and below is enough.
+        assert_eq!(pull(at * (1.0 - 1e-6), true).1, whole, "{criterion:?} {layout:?}");
+        assert!(pull(at * (1.0 + 1e-6), true).1 < whole, "{criterion:?} {layout:?}");
+    }
+}
+
+/// Two bonds far from each other, one stretched twice as much: cycles until each ends, with a threshold, a ratio of loads and a batch.
+#[test]
+fn bonds_tire_by_their_stretch() {
+    use perigrain_peri::criteria::fatigue::Fatigue;
+    let rules = Fatigue { init: [1e9, 3.0, 0.0], grow: [1e9, 3.0], ratio: 0.0 };
+    for layout in [Layout::Auto, Layout::List] {
+        let stretched = || {
+            let mut s = block("pmb", Criterion::Stretch, layout, [2, 1, 2]);
+            // Bonds across are as they were; those askew and the two along x differ.
+            s.x[1][0] += 1e-3 * DX;
+            s.x[3][0] += 2e-3 * DX;
+            s.forces(true);
+            s
+        };
+        let tire = |s: &mut Scene, rules: &Fatigue, most: f64, batch: f64| {
+            let mut families = s.families.take().unwrap();
+            let tired = families.tire(&s.view(), rules, most, batch);
+            s.families = Some(families);
+            tired
+        };
+        let mut s = stretched();
+        let longest = 2e-3f64;
+        let life = 1.0 / (1e9 * longest.powi(3));
+        let first = tire(&mut s, &rules, 1e30, 0.0);
+        assert!((first.cycles / life - 1.0).abs() < 1e-12 && first.broken == 1, "{first:?}");
+        assert!((first.stretch / longest - 1.0).abs() < 1e-12);
+        // Not enough cycles, and none that count.
+        let mut s = stretched();
+        let some = tire(&mut s, &rules, 0.25 * life, 0.0);
+        assert_eq!((some.cycles, some.broken), (0.25 * life, 0));
+        let rest = tire(&mut s, &rules, 1e30, 0.0);
+        assert!((rest.cycles / (0.75 * life) - 1.0).abs() < 1e-12 && rest.broken == 1, "{rest:?}");
+        let mut s = stretched();
+        let below = tire(&mut s, &Fatigue { init: [1e9, 3.0, 2.1e-3], ..rules }, 1e3, 0.0);
+        assert_eq!((below.cycles, below.broken), (1e3, 0));
+        // Between R = 1/2 and 1 the range is half as large.
+        let mut s = stretched();
+        let half = tire(&mut s, &Fatigue { ratio: 0.5, ..rules }, 1e30, 0.0);
+        assert!((half.cycles / (8.0 * life) - 1.0).abs() < 1e-12);
+        // All bonds with a life to lose end with the first.
+        let mut s = stretched();
+        let living = s.families.as_ref().unwrap().live_bonds();
+        let batch = tire(&mut s, &rules, 1e30, 1.0);
+        assert!(batch.broken > 1 && s.families.as_ref().unwrap().live_bonds() == living - 2 * batch.broken);
+    }
+}

@@ -1,5 +1,6 @@
-//! The loops over a sealed plan: steps in time, and minimization.
+//! The loops over a sealed plan: steps in time, minimization, load steps, cycles.
 
+pub mod fatigue;
 pub mod guarded;
 pub mod levels;
 pub mod minimize;

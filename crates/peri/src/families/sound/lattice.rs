@@ -21,7 +21,7 @@ impl LatticeBody {
         let (cells, chunks) = (self.particle.len(), self.intact.len());
         states(&self.state, &law.kind, (cells, PAD, self.alive.len() * LANES))?;
         states_are_numbers(&self.state)?;
-        works(&self.work, self.alive.len() * LANES)?;
+        works((&self.work, &self.life), self.alive.len() * LANES)?;
         numbers("displacements", self.u.iter().flatten())?;
         numbers("constants", self.tables.iter().chain(self.pairs.as_flattened()))?;
         numbers("volumes of cells", &self.cell_volume)?;

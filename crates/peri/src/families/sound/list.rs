@@ -22,7 +22,7 @@ impl ListBody {
         let n = self.record.len();
         states(&self.state, &law.kind, (n, 0, self.partner.len()))?;
         states_are_numbers(&self.state)?;
-        works(&self.work, self.partner.len())?;
+        works((&self.work, &self.life), self.partner.len())?;
         numbers("former displacements", self.last.as_flattened())?;
         let constants =
             self.pairs.iter().flat_map(|p| [&p.c, &p.shape, &p.s00, &p.alpha, &p.horizon, &p.yields]);

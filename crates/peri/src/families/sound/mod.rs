@@ -135,10 +135,12 @@ fn numbers<'a>(what: &str, all: impl IntoIterator<Item = &'a f64>) -> Fault {
     must(!all.into_iter().any(|x| x.is_nan()), &format!("one of the {what} is no number"))
 }
 
-/// A fault unless there is a work for each of so many bonds, or for none.
-fn works(work: &[[f64; 2]], bonds: usize) -> Fault {
+/// A fault unless there are works and lives for each of so many bonds, or for none.
+fn works((work, life): (&[[f64; 2]], &[f64]), bonds: usize) -> Fault {
     must(work.is_empty() || work.len() == bonds, "its works and bonds differ in number")?;
-    numbers("works of bonds", work.as_flattened())
+    must(life.is_empty() || life.len() == bonds, "its lives and bonds differ in number")?;
+    numbers("works of bonds", work.as_flattened())?;
+    numbers("lives of bonds", life)
 }
 
 /// Whether what sites and bonds remember are numbers.

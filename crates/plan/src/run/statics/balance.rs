@@ -38,7 +38,7 @@ const EXACT: f64 = 0.3;
 const BACK: f64 = 0.5;
 
 /// A body that is balanced load step by load step.
-pub(super) struct Balance<'a> {
+pub(in crate::run) struct Balance<'a> {
     pub plan: &'a mut StepPlan,
     pub w: &'a mut World,
     pub body: Body,
@@ -272,7 +272,7 @@ impl<'a> Balance<'a> {
     }
 
     /// Forces and energies here; nothing breaks or is remembered.
-    fn look_at_energy(&mut self) -> Result<()> {
+    pub fn look_at_energy(&mut self) -> Result<()> {
         self.w.slots.invalidate();
         let t = Tick { trial: true, dt: self.time_left(), ..self.tick_of_sums(false) };
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force, Stage::PostForce])

@@ -23,7 +23,7 @@ pub struct Ledger {
 
 /// What it is booked from.
 #[derive(Debug, Default)]
-pub(super) struct Books {
+pub(in crate::run) struct Books {
     numbers: Ledger,
     /// Bonds remember: they flow, soften or relax.
     pub remembers: bool,

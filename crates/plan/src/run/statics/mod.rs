@@ -14,7 +14,7 @@ mod path;
 use super::verlet::{cpu_seconds, tick};
 use super::{Made, Outcome, Watch};
 use crate::{Stage, StepPlan};
-use balance::Balance;
+pub(super) use balance::Balance;
 pub use bodies::Body;
 pub use ledger::Ledger;
 use perigrain_base::diag::Result;
@@ -186,14 +186,14 @@ pub fn statics(
 }
 
 /// Whether bonds flow, soften and relax where places are tried.
-fn implicit(w: &mut World, yes: bool) {
+pub(super) fn implicit(w: &mut World, yes: bool) {
     if let Some(families) = &mut *w.families {
         families.implicit = yes;
     }
 }
 
 /// Forces of the scene as it is found, at rest: bodies are built in the first ones.
-fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
+pub(super) fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
     w.particles.v.fill([0.0; 3]);
     let t = tick(w, true);
     plan.run(w, &t, &[Stage::Neighbor, Stage::PreForce, Stage::Force, Stage::PostForce])?;
@@ -206,7 +206,7 @@ fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
 
 impl Balance<'_> {
     /// Energy and output of the first scene.
-    fn begin(&mut self) -> Result<()> {
+    pub(super) fn begin(&mut self) -> Result<()> {
         self.w.facts.insert(*NUMBERS, Numbers { time: self.w.clock.time(), ..Numbers::default() });
         let t = self.tick_of_sums(true);
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force])?;
@@ -242,8 +242,15 @@ impl Balance<'_> {
         Ok(made)
     }
 
+    /// Balances the body where the clock stands, and anew until no bond breaks there; `torn`: bonds have broken since it was balanced.
+    pub(super) fn equilibrium(&mut self, made: &mut Numbers, torn: bool) -> Result<()> {
+        self.rebalance(made)?;
+        made.broken = self.cascade(torn, made)?;
+        self.finish(made)
+    }
+
     /// Notes the numbers of a load step, and lets output follow.
-    fn finish(&mut self, made: &mut Numbers) -> Result<()> {
+    pub(super) fn finish(&mut self, made: &mut Numbers) -> Result<()> {
         (made.step, made.time) = (self.w.clock.step - self.w.clock.first, self.w.clock.time());
         made.ledger = self.ledger.numbers();
         made.load = self.ledger.scale(self.w, &self.body);

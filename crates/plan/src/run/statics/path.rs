@@ -24,7 +24,7 @@ const FARTHEST: f64 = 4.0;
 
 /// The scene at the beginning of a load step, from where its paths begin for any part of it.
 #[derive(Debug)]
-pub(super) struct Start {
+pub(in crate::run) struct Start {
     clock: Clock,
     memo: Named<Vec<f64>>,
     columns: Columns,
@@ -121,7 +121,7 @@ impl Balance<'_> {
                     self.ratio.0 = ratio;
                 }
             }
-            made.broken += self.cascade(made)?;
+            made.broken += self.cascade(false, made)?;
             if self.w.settings.stops() {
                 return Ok(());
             }
@@ -165,11 +165,11 @@ impl Balance<'_> {
         Ok(high.0)
     }
 
-    /// Breaks bonds at this load until none is beyond its limit, and balances after each. How many broke.
-    fn cascade(&mut self, made: &mut Numbers) -> Result<usize> {
+    /// Breaks bonds at this load until none is beyond its limit, and balances after each; `torn`: some have broken before. How many broke.
+    pub fn cascade(&mut self, torn: bool, made: &mut Numbers) -> Result<usize> {
         let mut all = 0;
         for round in 0.. {
-            let broken = self.settle(round > 0, true)?;
+            let broken = self.settle(torn || round > 0, true)?;
             all += broken;
             if broken == 0 {
                 break;
