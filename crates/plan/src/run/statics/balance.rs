@@ -89,13 +89,12 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// Takes note of the bonds that live now, where more than this have broken since it was done. Clusters stay: they serve until
-    /// solutions take long.
+    /// Takes note of the bonds that live now, where more than this have broken since it was done.
     pub fn renew(&mut self, unless: usize) {
         if self.stale > unless {
             self.body.network = (self.scene.springs)(self.w);
             self.blocks = Blocks::of_network(&self.body.network, &self.body.held);
-            self.stale = 0;
+            (self.stale, self.coarse) = (0, None);
         }
     }
 
