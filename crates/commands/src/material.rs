@@ -38,8 +38,8 @@ impl Style for MaterialStyle {
                    Other words are of laws of stress and strain, which `pair_style peri/cauchy` takes. `yield` alone flows without \
                    hardening. `hardening linear` needs H, `voce` sigma_inf and b (and may have H), `swift` eps0 and n, `table` a file, \
                    `johnson-cook` B, n, C, m, rate0, Tr and Tm. `cohesion`, `phi` and `psi` (and H) make flow of Drucker and Prager in \
-                   place of that of Mises. Damage begins at `eps_f`, or where wear by D1 to D5 is complete (with rate0, Tr and Tm), and \
-                   softens until `Gf` is spent. A number without a use in the law is refused.\n\n\
+                   place of that of Mises. Damage begins at `eps_f`, where wear by D1 to D5 is complete (with rate0, Tr and Tm), or at a tension of \
+                   `ft`, also without flow, and softens until `Gf` is spent. A number without a use in the law is refused.\n\n\
                    Numbers in the line are in the deck's units. A file carries its own units and is converted (`units si cgs micro \
                    nano`). It is looked for beside the deck, in the working folder, then among the files built into perigrain: \
                    alumina.toml, brittle-plate.toml, impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to \
@@ -89,7 +89,7 @@ enum Property {
     Stretch(#[word(name = "value", what = "s00")] At<f64>),
     /// How much compression strengthens bonds; 0 by default.
     Alpha(#[word(name = "value", what = "alpha")] At<f64>),
-    /// The tensile strength, where bonds of `peri/pmb/softening` have their peak [pressure].
+    /// The tensile strength, where bonds of `peri/pmb/softening` have their peak and with `Gf` damage begins [pressure].
     #[word("ft")]
     Tensile(#[word(name = "value", what = "ft")] At<f64>),
     /// The conductivity k of `fix heat/peri` [energy/(time length temperature)].

@@ -149,7 +149,7 @@ impl Material {
     /// # Errors
     /// A number is missing, is refused, or has no use in that law.
     pub fn constitutive(&self) -> std::result::Result<perigrain_constitutive::Material, Fault> {
-        self.sheet.material(Elastic::from_young(self.young, self.nu))
+        self.sheet.material(Elastic::from_young(self.young, self.nu), self.tensile)
     }
 
     /// The first number that no material can have: its key and what is wrong with it.
