@@ -311,8 +311,8 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         let text = format!("this style needs `{key}` beside the material");
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
-    if !law.correspondence {
-        without_flow(m, &id.text, id.span).into_iter().for_each(|warning| cx.note(warning));
+    if let Some(warning) = without_flow(m, &id.text, id.span).filter(|_| !law.correspondence) {
+        cx.note(warning);
     }
     if law.softens() {
         softens(&mut s, id.span, &id.text)?;
