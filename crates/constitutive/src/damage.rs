@@ -10,6 +10,8 @@ pub enum Onset {
     Strain(f64),
     /// Where Σ Δε̄/ε_f reaches 1, with ε_f of Johnson and Cook.
     JohnsonCook(FractureStrain),
+    /// Where the largest principal stress of matter that flows reaches this [pressure].
+    Stress(f64),
 }
 
 /// Softening: after its onset D grows by Δū/ū_f with Δū = Δx Δε̄ and ū_f = 2G_f/σ_y, σ_y that of the onset. A layer of sites then
@@ -33,20 +35,31 @@ pub struct Flowed {
     pub ratio: f64,
     /// Yield stress at the end of the step [pressure].
     pub limit: f64,
+    /// The largest principal stress, where [`Damage::needs_largest`] [pressure].
+    pub largest: f64,
 }
 
 impl Damage {
+    /// Whether its onset depends on the largest principal stress.
+    #[inline]
+    pub fn needs_largest(&self) -> bool {
+        matches!(self.onset, Onset::Stress(_))
+    }
+
     /// Adds the wear and the damage of a step to a memory.
     #[inline]
     pub fn grow(&self, memory: &mut Memory, flowed: Flowed, moment: &Moment) {
-        let strain = match &self.onset {
-            Onset::Strain(strain) => *strain,
-            Onset::JohnsonCook(law) => law.at(flowed.ratio, flowed.step, moment.dt, moment.temperature),
+        let beyond = match &self.onset {
+            Onset::Strain(strain) => worn(memory, flowed.step, *strain),
+            Onset::JohnsonCook(law) => {
+                let strain = law.at(flowed.ratio, flowed.step, moment.dt, moment.temperature);
+                worn(memory, flowed.step, strain)
+            }
+            Onset::Stress(strength) => {
+                memory.wear = memory.wear.max(flowed.largest / strength).min(1.0);
+                if memory.wear < 1.0 { 0.0 } else { flowed.step }
+            }
         };
-        // Matter whose fracture strain is not positive has none left.
-        let intact = if strain > 0.0 { (1.0 - memory.wear) * strain } else { 0.0 };
-        let beyond = flowed.step - intact.clamp(0.0, flowed.step);
-        memory.wear = if beyond > 0.0 { 1.0 } else { memory.wear + flowed.step / strain };
         if beyond > 0.0 {
             if memory.onset == 0.0 {
                 memory.onset = flowed.limit;
@@ -55,4 +68,14 @@ impl Damage {
             memory.damage = (memory.damage + opened * memory.onset / (2.0 * self.energy)).min(1.0);
         }
     }
+}
+
+/// Adds a step of strain to the wear; returns the part of it beyond the onset. Matter whose fracture strain is not positive has none
+/// left.
+#[inline]
+fn worn(memory: &mut Memory, step: f64, strain: f64) -> f64 {
+    let intact = if strain > 0.0 { (1.0 - memory.wear) * strain } else { 0.0 };
+    let beyond = step - intact.clamp(0.0, step);
+    memory.wear = if beyond > 0.0 { 1.0 } else { memory.wear + step / strain };
+    beyond
 }

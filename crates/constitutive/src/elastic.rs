@@ -20,6 +20,11 @@ impl Elastic {
         Self { bulk: young / (3.0 * (1.0 - 2.0 * nu)), shear: young / (2.0 * (1.0 + nu)) }
     }
 
+    /// Young's modulus E [pressure].
+    pub fn young(&self) -> f64 {
+        9.0 * self.bulk * self.shear / (3.0 * self.bulk + self.shear)
+    }
+
     /// Small strains: P = K tr ε + 2G dev ε with ε = sym(F − 1); U = ½K (tr ε)² + G dev ε:dev ε. Rotations make stress.
     pub fn linear(&self, f: &Mat3, memory: &Memory) -> Response {
         let strain = symmetric_minus(f, 1.0);

@@ -7,6 +7,7 @@
 // Units stand in brackets in doc comments, as [pressure]; they are not links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod brittle;
 mod damage;
 mod drucker_prager;
 mod elastic;
@@ -21,6 +22,7 @@ mod site;
 mod spectral;
 mod tensor;
 
+pub use brittle::Brittle;
 pub use damage::{Damage, Onset};
 pub use drucker_prager::DruckerPrager;
 pub use elastic::Elastic;

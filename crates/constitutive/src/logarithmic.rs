@@ -7,11 +7,12 @@
 //! Source: J. C. Simo, Comput. Methods Appl. Mech. Eng. 99, 61 (1992); E. A. de Souza Neto, D. Perić, D. R. J. Owen,
 //! Computational Methods for Plasticity (2008), section 14.4.
 
+use crate::brittle::Brittle;
 use crate::damage::{Damage, Flowed};
 use crate::elastic::Elastic;
 use crate::flow::{Flow, Returned};
 use crate::site::{Failure, Memory, Moment, Response};
-use crate::spectral::{exponential, half_logarithm};
+use crate::spectral::{exponential, half_logarithm, principal};
 use crate::tensor::{
     Mat3, Sym3, UNIT, carried, carried_back, determinant, deviator, inverse_transposed, plus, product_left,
     scaled, square, trace,
@@ -67,6 +68,11 @@ impl Strained {
         2.0 * elastic.shear * (1.5 * square(&self.deviator)).sqrt()
     }
 
+    /// The largest principal Kirchhoff stress of the undamaged matter.
+    fn largest(&self, elastic: &Elastic) -> f64 {
+        elastic.bulk * self.volume + 2.0 * elastic.shear * principal(&self.deviator)[0]
+    }
+
     /// C_p⁻¹ = F⁻¹ exp(2ε) F⁻ᵀ.
     fn plastic(&self) -> Sym3 {
         let twice = scaled(&plus(&self.deviator, self.volume / 3.0), 2.0);
@@ -81,6 +87,25 @@ impl Elastic {
     /// det F is not positive.
     pub fn hencky(&self, f: &Mat3, memory: &Memory) -> Result<Response, Failure> {
         Ok(Strained::new(f, &UNIT)?.response(self, *memory))
+    }
+
+    /// Hencky elasticity and damage where matter is pulled.
+    ///
+    /// # Errors
+    /// det F is not positive, or sites are too far apart.
+    pub fn brittle(
+        &self,
+        law: &Brittle,
+        f: &Mat3,
+        memory: &Memory,
+        moment: &Moment,
+    ) -> Result<Response, Failure> {
+        let strained = Strained::new(f, &UNIT)?;
+        let mut after = *memory;
+        let freed = law.grow(self, &mut after, strained.largest(self), moment)?;
+        let memory = if moment.advance { after } else { *memory };
+        let released = freed * strained.energies(self)[1];
+        Ok(Response { memory, released, ..strained.response(self, after) })
     }
 
     /// Hencky elasticity, plastic flow and damage.
@@ -103,7 +128,7 @@ impl Elastic {
         strained.volume = returned.volume;
         let mut after = Memory { strain: memory.strain + returned.step, ..*memory };
         if let Some(damage) = damage {
-            damage.grow(&mut after, self.flowed(&strained, &returned), moment);
+            damage.grow(&mut after, self.flowed(&strained, &returned, damage), moment);
         }
         let grown = after.damage - memory.damage;
         let response = Response {
@@ -120,9 +145,13 @@ impl Elastic {
     }
 
     /// The flow of a step, for damage.
-    fn flowed(&self, strained: &Strained, returned: &Returned) -> Flowed {
-        let ratio = self.bulk * strained.volume / strained.equivalent(self);
-        Flowed { step: returned.step, ratio, limit: returned.limit }
+    fn flowed(&self, strained: &Strained, returned: &Returned, damage: &Damage) -> Flowed {
+        Flowed {
+            step: returned.step,
+            ratio: self.bulk * strained.volume / strained.equivalent(self),
+            limit: returned.limit,
+            largest: if damage.needs_largest() { strained.largest(self) } else { 0.0 },
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! A material: elastic constants and a law.
 
+use crate::brittle::Brittle;
 use crate::damage::Damage;
 use crate::elastic::Elastic;
 use crate::flow::Flow;
@@ -15,6 +16,8 @@ pub enum Law {
     NeoHooke,
     /// Logarithmic strain: τ = K tr ε + 2G dev ε, ε = ½ ln FFᵀ.
     Hencky,
+    /// Logarithmic strain, and damage where matter is pulled.
+    Brittle(Brittle),
     /// Logarithmic elastic strain, plastic flow, and damage that softens.
     Plastic {
         /// Yield surface and flow rule.
@@ -47,6 +50,7 @@ impl Material {
             Law::Linear => Ok(self.elastic.linear(f, memory)),
             Law::NeoHooke => self.elastic.neo_hooke(f, memory),
             Law::Hencky => self.elastic.hencky(f, memory),
+            Law::Brittle(law) => self.elastic.brittle(law, f, memory, moment),
             Law::Plastic { flow, damage } => self.elastic.plastic((flow, damage.as_ref()), f, memory, moment),
         }
     }
@@ -63,6 +67,6 @@ impl Material {
 
     /// Whether sites remember anything: elastic laws return the memory that they are given.
     pub fn remembers(&self) -> bool {
-        matches!(self.law, Law::Plastic { .. })
+        matches!(self.law, Law::Brittle(_) | Law::Plastic { .. })
     }
 }

@@ -4,6 +4,7 @@ mod keys;
 
 pub use keys::{Key, Quantity};
 
+use crate::brittle::Brittle;
 use crate::damage::{Damage, Onset};
 use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
@@ -148,16 +149,19 @@ impl Sheet {
         }
     }
 
-    /// The material with these elastic constants.
+    /// The material with these elastic constants and this tensile strength, if it is given.
     ///
     /// # Errors
     /// A number is missing, is refused, or has no use in the law that the others make.
-    pub fn material(&self, elastic: Elastic) -> Result<Material, Fault> {
+    pub fn material(&self, elastic: Elastic, tensile: Option<f64>) -> Result<Material, Fault> {
         self.plausible()?;
-        let mut reading = Reading { sheet: self, used: [false; Key::COUNT], table: false };
-        let law = match (reading.flow()?, self.elastic.unwrap_or_default()) {
+        let mut reading = Reading { sheet: self, tensile, used: [false; Key::COUNT], table: false };
+        let (flow, brittle) = (reading.flow()?, self.get(Key::Gf).is_some());
+        let law = match (flow, self.elastic.unwrap_or_default()) {
             (Some(flow), Strain::Hencky) => Law::Plastic { flow, damage: reading.damage()? },
+            (None, Strain::Hencky) if brittle => Law::Brittle(reading.brittle()?),
             (Some(_), _) => return refused("elastic", "flow needs `elastic hencky`".into()),
+            (None, _) if brittle => return refused("elastic", "damage needs `elastic hencky`".into()),
             (None, Strain::Hencky) => Law::Hencky,
             (None, Strain::NeoHooke) => Law::NeoHooke,
             (None, Strain::Linear) => Law::Linear,
@@ -175,6 +179,7 @@ fn refused<T>(key: &'static str, why: String) -> Result<T, Fault> {
 /// Takes numbers out of a sheet and keeps account of those with a use.
 struct Reading<'a> {
     sheet: &'a Sheet,
+    tensile: Option<f64>,
     used: [bool; Key::COUNT],
     table: bool,
 }
@@ -288,7 +293,8 @@ impl Reading<'_> {
         const D: [Key; 5] = [Key::D1, Key::D2, Key::D3, Key::D4, Key::D5];
         let fracture = self.sheet.get(Key::EpsF);
         let onset = match (D.iter().any(|key| self.sheet.get(*key).is_some()), fracture) {
-            (false, None) => return Ok(None),
+            (false, None) if self.sheet.get(Key::Gf).is_none() => return Ok(None),
+            (false, None) => Onset::Stress(self.strength("softening without eps_f or D1 to D5")?),
             (true, Some(_)) => {
                 return refused("eps_f", "eps_f and D1 to D5 both set when damage begins: give one".into());
             }
@@ -307,6 +313,17 @@ impl Reading<'_> {
         Ok(Some(Damage { onset, energy: self.need("softening by damage", Key::Gf)? }))
     }
 
+    /// Damage of elastic matter.
+    fn brittle(&mut self) -> Result<Brittle, Fault> {
+        const LAW: &str = "softening of matter that does not flow";
+        Ok(Brittle { strength: self.strength(LAW)?, energy: self.need(LAW, Key::Gf)? })
+    }
+
+    /// The tensile strength, which a law needs.
+    fn strength(&self, law: &'static str) -> Result<f64, Fault> {
+        self.tensile.ok_or(Fault::Missing { key: "ft", law, example: "\"3 MPa\"" })
+    }
+
     /// Refuses what has no use.
     fn all_used(&self) -> Result<(), Fault> {
         let law = match (self.sheet.hardening, self.sheet.get(Key::Cohesion)) {
@@ -319,7 +336,7 @@ impl Reading<'_> {
             (None, None) if self.sheet.get(Key::Yield).is_some() => {
                 "a yield stress without `hardening`".into()
             }
-            (None, None) => "matter without `yield`, `hardening` or `cohesion`, which is elastic,".into(),
+            (None, None) => "matter without `yield`, `hardening` or `cohesion`".into(),
         };
         let unused =
             Key::ALL.into_iter().find(|key| self.sheet.get(*key).is_some() && !self.used[*key as usize]);

@@ -11,9 +11,9 @@ pub struct Memory {
     pub strain: f64,
     /// Damage D, from 0 (intact) to 1 (bears no tension).
     pub damage: f64,
-    /// Sum of Δε̄/ε_f: damage begins where it reaches 1.
+    /// Sum of Δε̄/ε_f, or the largest principal stress so far over the tensile strength: damage begins where it reaches 1.
     pub wear: f64,
-    /// Yield stress at which damage began; 0 before [pressure].
+    /// Yield stress or tensile strength at which damage began; 0 before [pressure].
     pub onset: f64,
 }
 
@@ -83,6 +83,16 @@ pub enum Failure {
     /// The deformation gradient has entries that are no finite numbers.
     #[error("the deformation gradient is not finite")]
     NotFinite,
+    /// A crack in one layer of sites would set more energy free than it takes.
+    #[error(
+        "a spacing of {spacing:.3e} is too coarse: stress that falls over G_f needs less than 2 E G_f/f_t² = {most:.3e}"
+    )]
+    Coarse {
+        /// The spacing [length].
+        spacing: f64,
+        /// What it must be below [length].
+        most: f64,
+    },
     /// No plastic strain returns the stress to the yield surface.
     #[error("no plastic strain returns a trial stress of {0:.3e} to the yield surface")]
     NoReturn(f64),

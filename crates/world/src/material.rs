@@ -72,8 +72,8 @@ impl Material {
                 Code::SYNTAX
             };
             Diagnostic::error(code, e.span().map(at), format!("material file: {message}")).help(
-                "a material file has name, source, date, E, nu, rho and may have Gc or s00, alpha and ft, and the keys of flow \
-                 and damage in potentials/README.md",
+                "a material file has name, source, date, E, nu, rho and may have Gc or s00, alpha and ft, and the keys of heat, \
+                 flow and damage in potentials/README.md",
             )
         })?;
         let quantity = |q: &Spanned<String>, units| {
@@ -96,7 +96,7 @@ impl Material {
             (None, Some(s)) => Some(Strength::Stretch(*s.get_ref())),
             (None, None) => None,
         };
-        let sheet = r.sheet(file)?;
+        let (sheet, thermal) = (r.sheet(file)?, r.thermal(file)?);
         let material = Material {
             sheet,
             name: r.name,
@@ -106,7 +106,7 @@ impl Material {
             strength,
             alpha: r.alpha.as_ref().map_or(0.0, |a| *a.get_ref()),
             tensile: r.ft.as_ref().map(|f| quantity(f, PRESSURE)).transpose()?,
-            thermal: Thermal::default(),
+            thermal,
             source: r.source,
             date: r.date,
         };
@@ -114,6 +114,10 @@ impl Material {
             "nu" => at(r.nu.span()),
             "s00" => r.s00.as_ref().map_or(at(0..0), |s| at(s.span())),
             "alpha" => r.alpha.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "conductivity" => r.conductivity.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "heat_capacity" => r.heat_capacity.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "expansion" => r.expansion.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "stress_free" => r.stress_free.as_ref().map_or(at(0..0), |s| at(s.span())),
             _ => at(r.E.span()),
         };
         match material.implausible() {
@@ -149,7 +153,7 @@ impl Material {
     /// # Errors
     /// A number is missing, is refused, or has no use in that law.
     pub fn constitutive(&self) -> std::result::Result<perigrain_constitutive::Material, Fault> {
-        self.sheet.material(Elastic::from_young(self.young, self.nu))
+        self.sheet.material(Elastic::from_young(self.young, self.nu), self.tensile)
     }
 
     /// The first number that no material can have: its key and what is wrong with it.
@@ -241,6 +245,20 @@ mod tests {
         let micro = m.in_units(UnitSystem::Micro.mechanical().unwrap());
         assert!(near(micro.young, 2e6) && near(micro.density, 1.5));
         assert!(matches!(micro.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
+    }
+
+    #[test]
+    fn heat_of_files() {
+        let text = "conductivity='401 W/(m K)'\nheat_capacity='383 J/(kg K)'\nexpansion='17e-6 1/K'\nstress_free='293 K'";
+        let heat = parse(&format!("{MINIMAL}{text}")).unwrap().thermal;
+        let expected =
+            Thermal { conductivity: 401.0, heat_capacity: 383.0, expansion: 17e-6, stress_free: 293.0 };
+        assert_eq!(heat, expected);
+        let short = "k='401 W/m/K'\ncp='383 J/kg/K'\nalphaT='17e-6 1/K'";
+        let short = parse(&format!("{MINIMAL}{short}")).unwrap().thermal;
+        assert_eq!(short, Thermal { stress_free: 0.0, ..expected });
+        assert_eq!(refused(&format!("{MINIMAL}conductivity='-1 W/(m K)'")).0, "'-1 W/(m K)'");
+        assert_eq!(refused(&format!("{MINIMAL}cp='383 J'")).0, "'383 J'");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Onset of damage and softening.
 
 use super::*;
-use crate::{Damage, Flow, FractureStrain, Onset, Reference};
+use crate::{Brittle, Damage, DruckerPrager, Failure, Flow, FractureStrain, Onset, Reference};
 
 const REFERENCE: Reference = Reference { rate: 1.0, temperature: 298.0, melting: 1356.0 };
 
@@ -99,4 +99,81 @@ fn matter_without_a_fracture_strain_is_damaged_at_once() {
     let all = drawn(&metal(Onset::JohnsonCook(brittle), 20.0), 0.05, 50, 1.0);
     let first = all.iter().find(|r| r.memory.strain > 0.0).unwrap().memory;
     assert!(first.wear == 1.0 && first.damage > 0.0, "{first:?}");
+}
+
+/// Concrete in MPa and mm: 30 GPa, 0.2, 3 MPa, 0.1 N/mm.
+fn concrete() -> Material {
+    let law = Law::Brittle(Brittle { strength: 3.0, energy: 0.1 });
+    Material { elastic: Elastic::from_young(30e3, 0.2), law }
+}
+
+/// F of a bar of this axial logarithmic strain whose sides carry no stress while it is elastic: ν of Hencky's law.
+fn bar(axial: f64) -> Mat3 {
+    stretches([axial, -0.2 * axial, -0.2 * axial].map(f64::exp))
+}
+
+#[test]
+fn pulled_concrete_softens_on_a_line() {
+    let material = concrete();
+    // s = 2EG_f/(f_t²Δx) with Δx = 20 mm.
+    let (spacing, end) = (20.0, 2.0 * 30e3 * 0.1 / (9.0 * 20.0));
+    let moment = Moment { spacing, ..STEP };
+    let (mut memory, mut released) = (Memory::default(), 0.0);
+    for k in 1..=400 {
+        let w = k as f64 * 0.1;
+        let f = bar(w * 3.0 / 30e3);
+        let r = material.respond(&f, &memory, &moment).unwrap();
+        let tau = kirchhoff(&r, &f);
+        let expected = if w <= 1.0 { 3.0 * w } else { 3.0 * (end - w).max(0.0) / (end - 1.0) };
+        // Rounding of strains about 1 over 1e-4, times E, grows with w.
+        assert!((tau[0][0] - expected).abs() < 1e-10 * w, "{w}: {} {expected}", tau[0][0]);
+        released += r.released;
+        memory = r.memory;
+    }
+    assert_eq!((memory.damage, memory.onset), (1.0, 3.0));
+    // All of G_f, exactly where stresses grow in proportion.
+    assert!((released * spacing / 0.1 - 1.0).abs() < 1e-9, "{}", released * spacing);
+}
+
+#[test]
+fn cracks_in_concrete_unload_to_the_origin_and_close() {
+    let material = concrete();
+    let moment = Moment { spacing: 20.0, ..STEP };
+    let r = material.respond(&bar(5e-4), &Memory::default(), &moment).unwrap();
+    let half = material.respond(&bar(2.5e-4), &r.memory, &moment).unwrap();
+    assert!(half.memory == r.memory && half.released == 0.0);
+    assert!((half.energy / r.energy - 0.25).abs() < 1e-9);
+    let [damaged, whole] = [r.memory, Memory::default()].map(|memory| {
+        let third = (-1e-4f64).exp();
+        material.respond(&stretches([third; 3]), &memory, &moment).unwrap().piola
+    });
+    assert_eq!(damaged, whole);
+    // A trial leaves the memory.
+    let trial = Moment { advance: false, ..moment };
+    let trial = material.respond(&bar(5e-4), &Memory::default(), &trial).unwrap();
+    assert_eq!((trial.piola, trial.memory), (r.piola, Memory::default()));
+}
+
+#[test]
+fn sites_too_far_apart_for_a_fracture_energy_are_refused() {
+    let material = concrete();
+    // 2EG_f/f_t² = 666.7 mm.
+    let moment = Moment { spacing: 700.0, ..STEP };
+    let failure = material.respond(&UNIT, &Memory::default(), &moment).unwrap_err();
+    assert!(matches!(failure, Failure::Coarse { most, .. } if (most / (2000.0 / 3.0) - 1.0).abs() < 1e-12));
+}
+
+#[test]
+fn matter_that_flows_may_be_damaged_by_tension() {
+    let cone = DruckerPrager::from_angles(10.0, 0.0, 30.0, 30.0);
+    let damage = Damage { onset: Onset::Stress(5.0), energy: 0.1 };
+    let law = Law::Plastic { flow: Flow::DruckerPrager(cone), damage: Some(damage) };
+    let material = Material { elastic: Elastic::from_young(20e3, 0.25), law };
+    let at = |f| material.respond(&f, &Memory::default(), &STEP).unwrap();
+    // Pulled to the apex at 17 MPa, above 5 MPa; sheared under pressure without tension.
+    assert!(at(stretches([1.01; 3])).memory.damage > 0.0);
+    let pressed = at(stretches([1.004, 0.985, 0.9995]));
+    assert!(pressed.memory.strain > 0.0 && pressed.memory.damage == 0.0);
+    // Elastic tension of any size does no damage by itself.
+    assert_eq!(at(stretches([1.0002, 1.0, 1.0])).memory, Memory::default());
 }

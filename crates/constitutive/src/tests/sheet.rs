@@ -15,7 +15,7 @@ fn sheet(hardening: Option<Curve>, numbers: &[(Key, f64)]) -> Sheet {
 
 /// The key of a fault, and whether it is missing.
 fn fault(sheet: &Sheet) -> (&'static str, bool) {
-    match sheet.material(ELASTIC).unwrap_err() {
+    match sheet.material(ELASTIC, None).unwrap_err() {
         Fault::Missing { key, .. } => (key, true),
         Fault::Refused { key, .. } => (key, false),
     }
@@ -27,7 +27,7 @@ fn an_empty_sheet_is_elastic() {
         [(None, Law::Hencky), (Some(Strain::Linear), Law::Linear), (Some(Strain::NeoHooke), Law::NeoHooke)]
     {
         let sheet = Sheet { elastic: strain, ..Sheet::default() };
-        assert_eq!(sheet.material(ELASTIC), Ok(Material { elastic: ELASTIC, law }));
+        assert_eq!(sheet.material(ELASTIC, None), Ok(Material { elastic: ELASTIC, law }));
         assert_eq!(sheet.given().is_empty(), strain.is_none());
     }
 }
@@ -35,7 +35,7 @@ fn an_empty_sheet_is_elastic() {
 #[test]
 fn numbers_become_laws() {
     use Key::*;
-    let law = |sheet: &Sheet| sheet.material(ELASTIC).unwrap().law;
+    let law = |sheet: &Sheet| sheet.material(ELASTIC, None).unwrap().law;
     let perfect = law(&sheet(None, &[(Yield, 2.0)]));
     assert_eq!(perfect, flowing(Hardening::Linear { yields: 2.0, modulus: 0.0 }));
     let voce = law(&sheet(Some(Curve::Voce), &[(Yield, 2.0), (SigmaInf, 3.0), (SmallB, 4.0), (H, 5.0)]));
@@ -50,6 +50,21 @@ fn numbers_become_laws() {
     assert!(matches!(torn, Law::Plastic { damage: Some(found), .. } if found == damage));
 }
 
+#[test]
+fn a_tensile_strength_begins_damage_where_nothing_else_does() {
+    let law = |numbers: &[(Key, f64)]| sheet(None, numbers).material(ELASTIC, Some(3.0)).unwrap().law;
+    assert_eq!(law(&[(Key::Gf, 7.0)]), Law::Brittle(crate::Brittle { strength: 3.0, energy: 7.0 }));
+    let onset = |law| match law {
+        Law::Plastic { damage, .. } => damage.map(|damage| damage.onset),
+        _ => None,
+    };
+    assert_eq!(onset(law(&[(Key::Yield, 2.0), (Key::Gf, 7.0)])), Some(crate::Onset::Stress(3.0)));
+    let strain = [(Key::Yield, 2.0), (Key::Gf, 7.0), (Key::EpsF, 0.1)];
+    assert_eq!(onset(law(&strain)), Some(crate::Onset::Strain(0.1)));
+    // Without Gf it is the strength of bonds.
+    assert_eq!((law(&[]), onset(law(&[(Key::Yield, 2.0)]))), (Law::Hencky, None));
+}
+
 /// Numbers of Johnson and Cook, fracture included.
 fn copper() -> Sheet {
     use Key::*;
@@ -62,7 +77,7 @@ fn copper() -> Sheet {
 #[test]
 fn each_number_that_a_law_needs_is_missed_by_its_key() {
     let whole = copper();
-    assert!(whole.material(ELASTIC).is_ok());
+    assert!(whole.material(ELASTIC, None).is_ok());
     for key in Key::ALL.into_iter().filter(|key| whole.get(*key).is_some()) {
         let numbers = Key::ALL.into_iter().filter(|k| *k != key);
         let numbers: Vec<_> = numbers.filter_map(|k| Some((k, whole.get(k)?))).collect();
@@ -71,6 +86,8 @@ fn each_number_that_a_law_needs_is_missed_by_its_key() {
     assert_eq!(fault(&sheet(Some(Curve::Table), &[])), ("table", true));
     assert_eq!(fault(&sheet(Some(Curve::Linear), &[(Key::Yield, 1.0)])), ("H", true));
     assert_eq!(fault(&sheet(None, &[(Key::Cohesion, 1.0)])), ("phi", true));
+    assert_eq!(fault(&sheet(None, &[(Key::Gf, 1.0)])), ("ft", true));
+    assert_eq!(fault(&sheet(None, &[(Key::Yield, 1.0), (Key::Gf, 1.0)])), ("ft", true));
 }
 
 #[test]
@@ -82,9 +99,8 @@ fn numbers_without_a_use_or_out_of_range_are_refused() {
         key
     };
     assert_eq!(refused(None, &[(H, 1.0)]), "H");
-    assert_eq!(refused(None, &[(Gf, 1.0)]), "Gf");
+    assert_eq!(refused(None, &[(EpsF, 1.0)]), "eps_f");
     assert_eq!(refused(None, &[(Yield, 1.0), (H, 1.0)]), "H");
-    assert_eq!(refused(None, &[(Yield, 1.0), (Gf, 1.0)]), "Gf");
     assert_eq!(refused(Some(Curve::Linear), &[(Yield, 1.0), (H, 1.0), (SmallB, 1.0)]), "b");
     assert_eq!(refused(None, &[(Yield, 1.0), (Cohesion, 1.0)]), "yield");
     assert_eq!(refused(Some(Curve::Voce), &[(Cohesion, 1.0)]), "hardening");

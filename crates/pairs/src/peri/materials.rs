@@ -311,7 +311,7 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
         let text = format!("this style needs `{key}` beside the material");
         return fail(Code::MISSING_ARGUMENT, args.here(), text);
     }
-    if let Some(warning) = without_flow(m, &id.text, id.span) {
+    if let Some(warning) = without_flow(m, &id.text, id.span).filter(|_| !law.correspondence) {
         cx.note(warning);
     }
     if law.softens() {

@@ -1,5 +1,6 @@
 //! A material file as written: numbers with units are still text.
 
+use super::Thermal;
 use perigrain_base::diag::{Code, Diagnostic, FileId, Result, Span, nearest};
 use perigrain_constitutive::sheet::{Curve, Fault, Key, Quantity, Sheet, Strain};
 use serde::Deserialize;
@@ -14,6 +15,9 @@ pub const DENSITY: Units = &[("kg/m3", 1.0), ("g/cm3", 1e3)];
 pub const ENERGY_PER_AREA: Units = &[("J/m2", 1.0), ("kJ/m2", 1e3), ("N/m", 1.0), ("N/mm", 1e3)];
 const RATE: Units = &[("1/s", 1.0)];
 const TEMPERATURE: Units = &[("K", 1.0)];
+const CONDUCTIVITY: Units = &[("W/(m K)", 1.0), ("W/m/K", 1.0)];
+const HEAT_CAPACITY: Units = &[("J/(kg K)", 1.0), ("J/kg/K", 1.0)];
+const EXPANSION: Units = &[("1/K", 1.0)];
 
 macro_rules! record {
     ($($key:ident $field:ident $name:literal)*) => {
@@ -31,6 +35,13 @@ macro_rules! record {
             pub s00: Option<Spanned<f64>>,
             pub alpha: Option<Spanned<f64>>,
             pub ft: Option<Spanned<String>>,
+            #[serde(alias = "k")]
+            pub conductivity: Option<Spanned<String>>,
+            #[serde(alias = "cp")]
+            pub heat_capacity: Option<Spanned<String>>,
+            #[serde(alias = "alphaT")]
+            pub expansion: Option<Spanned<String>>,
+            pub stress_free: Option<Spanned<String>>,
             elastic: Option<Spanned<String>>,
             hardening: Option<Spanned<String>>,
             table: Option<Spanned<Vec<(f64, String)>>>,
@@ -72,6 +83,23 @@ record! {
 }
 
 impl Record {
+    /// The heat data in SI units; problems are underlined in `file`.
+    pub fn thermal(&self, file: FileId) -> Result<Thermal> {
+        let value = |entry: &Option<Spanned<String>>, units: Units, example: &str| {
+            let Some(entry) = entry else { return Ok(0.0) };
+            quantity(entry.get_ref(), units).map_err(|text| {
+                let span = Span::new(file, entry.span().start, entry.span().end);
+                Diagnostic::error(Code::BAD_VALUE, span, text).help(format!("write {example}"))
+            })
+        };
+        Ok(Thermal {
+            conductivity: value(&self.conductivity, CONDUCTIVITY, "`conductivity = \"401 W/(m K)\"`")?,
+            heat_capacity: value(&self.heat_capacity, HEAT_CAPACITY, "`heat_capacity = \"383 J/(kg K)\"`")?,
+            expansion: value(&self.expansion, EXPANSION, "`expansion = \"17e-6 1/K\"`")?,
+            stress_free: value(&self.stress_free, TEMPERATURE, "`stress_free = \"293 K\"`")?,
+        })
+    }
+
     /// The data sheet in SI units; problems are underlined in `file`.
     pub fn sheet(&self, file: FileId) -> Result<Sheet> {
         let wrong = |range: std::ops::Range<usize>, text: String| {
