@@ -1,12 +1,15 @@
 //! Peridynamic forces on the scene of `bench/pd_elastic.in` (a glass disc of 102,034 particles): CPU time per
 //! half bond and step for both layouts. Run `cargo bench --bench kernels`; `-- 30 1 lattice` for 30 steps on one
 //! thread with the lattice layout alone; `-- 75 1 lattice break` with the velocities of `pd_impact.in`'s second
-//! stage, under which bonds break from the first steps on (then the mean over all steps is what counts).
+//! stage, under which bonds break from the first steps on (then the mean over all steps is what counts); `-- 30 1 lattice lps`
+//! (`hencky`, `flow`) under a state-based law: `peri/lps`, or correspondence with an elastic material or one that flows.
 
 use std::time::Instant;
 
 use perigrain::par;
 use perigrain::peri::families::*;
+use perigrain::peri::law;
+use perigrain_constitutive::{Elastic, Flow, Hardening, Law as Stress, Material};
 
 struct Disc {
     x: Vec<[f64; 3]>,
@@ -51,9 +54,31 @@ fn disc() -> Disc {
     }
 }
 
+/// The law of a case: plain bonds unless it is one of the state-based ones.
+fn law_of(case: &str) -> Law {
+    let elastic = Elastic { bulk: 35.0e9, shear: 21.0e9 };
+    let moduli = vec![Moduli { bulk: elastic.bulk, shear: elastic.shear, ..Moduli::default() }];
+    let states = Law { moduli, dt: DT, ..Law::default() };
+    // Every particle that moves at all flows.
+    let flow = Flow::Mises(Hardening::Linear { yields: 1.0, modulus: 1.0e9 });
+    let stress = match case {
+        "lps" => return Law { kind: law::LPS, ..states },
+        "hencky" => Stress::Hencky,
+        "flow" => Stress::Plastic { flow, damage: None },
+        _ => return Law::default(),
+    };
+    Law {
+        kind: law::CAUCHY,
+        materials: vec![Some(Material { elastic, law: stress })],
+        control: 0.2,
+        ..states
+    }
+}
+
 /// Runs the scene; returns the fastest whole step, the fastest force evaluation, the mean step (seconds of process
 /// time), and the kinetic energy at the end.
-fn run(steps: usize, layout: Layout, breaks: bool) -> (f64, f64, f64, f64) {
+fn run(steps: usize, layout: Layout, case: &str) -> (f64, f64, f64, f64) {
+    let breaks = case == "break";
     let delta = 3.0 * DX + 1.0e-8;
     let c = 18.0 * 35.0e9 / (std::f64::consts::PI * delta.powi(4));
     let mut table = PmbTable::new(1);
@@ -69,7 +94,9 @@ fn run(steps: usize, layout: Layout, breaks: bool) -> (f64, f64, f64, f64) {
     options.skip_rest = std::env::var("NOSKIP").is_err();
     let view =
         PeriView { x: &s.x, x0: &s.x0, kind: &s.kind, volume: &s.volume, bounds: s.bounds, excluded: None };
-    let Ok(mut families) = Families::build(&view, &table, options) else { return (0.0, 0.0, 0.0, 0.0) };
+    let Ok(mut families) = Families::build_of(&view, &table, options, law_of(case)) else {
+        return (0.0, 0.0, 0.0, 0.0);
+    };
     let mut whole = f64::INFINITY;
     let mut force = f64::INFINITY;
     let start = cpu_time();
@@ -139,8 +166,8 @@ fn main() {
             continue;
         }
         let clock = Instant::now();
-        let breaks = words.get(3).is_some_and(|w| w == "break");
-        let (whole, force, mean, kinetic) = run(steps, layout, breaks);
+        let case = words.get(3).map_or("", String::as_str);
+        let (whole, force, mean, kinetic) = run(steps, layout, case);
         let hb = 5_785_568.0;
         println!(
             "{name}: step {:.3} ms ({:.2} ns per half bond), force {:.3} ms ({:.2}), mean step {:.3} ms, kinetic {kinetic:.15e}, wall {:.2} s",

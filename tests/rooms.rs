@@ -38,7 +38,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("commands", &["base", "constitutive", "geometry", "lang", "mesh", "neigh", "output", "styles", "world"]),
     // One command with all that belongs to it.
     ("calibrate", &["base", "bonded", "lang", "neigh", "output", "plan", "statics", "styles", "world"]),
-    ("pairs", &["base", "bonded", "contact", "lang", "neigh", "peri", "plan", "styles", "world"]),
+    (
+        "pairs",
+        &["base", "bonded", "constitutive", "contact", "lang", "neigh", "peri", "plan", "styles", "world"],
+    ),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "statics", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "output", "plan", "styles", "world"]),
     // The Python module knows the program, and of what is below only what that shows.

@@ -2,4 +2,5 @@
 
 mod bond_weights;
 mod breaking;
+mod cauchy;
 mod scatter;

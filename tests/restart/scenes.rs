@@ -144,6 +144,17 @@ pub const EPS_AGAIN: &str = "pair_style peri/eps\npair_coeff * * 14e9 6e9 0.0030
     fix 1 all nve\ntimestep 5.0e-8\ncompute flow all plasticity/atom\ncompute dsum all reduce sum c_flow\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
+/// The block of metal, which flows and breaks.
+pub const METAL: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0.001\nregion blk block 0 7 0 5 0 5\n\
+    create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
+    material metal E 2.5e10 nu 0.3 rho 2400 yield 4e7 hardening linear H 1e9\n\
+    variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
+pub const METAL_AGAIN: &str = "pair_style peri/cauchy\npair_coeff * * material metal horizon 2.015 s00 0.012\n\
+    peri_modify volume full\nneighbor 0.0006 bin\n\
+    fix 1 all nve\ntimestep 5.0e-8\ncompute flow all peri/state/atom mises plastic damage\n\
+    compute dsum all reduce sum c_flow[1] c_flow[2] c_flow[3]\n\
+    thermo_style custom step time pe ke press c_dsum[1] c_dsum[2] c_dsum[3]\nthermo_modify format float %24.17g\nthermo 5\n";
+
 /// The block of bonds that soften beyond a peak: what is left of each, and of exponential ones how far they have been stretched.
 pub const SOFT_AGAIN: &str = "pair_style peri/pmb/softening\npair_coeff * * 1.6e21 0.0030001 0.0015 1100\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\ncompute e all energy/ledger\n\
@@ -210,7 +221,7 @@ pub const UNLIKE_AGAIN: &str = "pair_style peri/lps\npair_coeff * * material gla
     compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
-pub const SCENES: [Scene; 27] = [
+pub const SCENES: [Scene; 28] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "scattered", make: SCATTERED, again: BLOCK_AGAIN, steps: 60, list: false },
@@ -219,6 +230,8 @@ pub const SCENES: [Scene; 27] = [
     Scene { name: "ves", make: BLOCK, again: VES_AGAIN, steps: 60, list: false },
     Scene { name: "eps", make: BLOCK, again: EPS_AGAIN, steps: 60, list: false },
     Scene { name: "eps, list", make: BLOCK, again: EPS_AGAIN, steps: 40, list: true },
+    Scene { name: "metal", make: METAL, again: METAL_AGAIN, steps: 60, list: false },
+    Scene { name: "metal, list", make: METAL, again: METAL_AGAIN, steps: 40, list: true },
     Scene { name: "softening", make: BLOCK, again: SOFT_AGAIN, steps: 60, list: false },
     Scene { name: "softening, list", make: BLOCK, again: DECAYING_AGAIN, steps: 60, list: true },
     Scene { name: "work", make: BLOCK, again: WORK_AGAIN, steps: 60, list: false },

@@ -32,7 +32,15 @@ impl ComputeStyle for DamageAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         let known = Known {
             name: self.name(),
-            by: &["peri/pmb", "peri/pmb/plastic", "peri/pmb/softening", "peri/lps", "peri/ves", "peri/eps"],
+            by: &[
+                "peri/pmb",
+                "peri/pmb/plastic",
+                "peri/pmb/softening",
+                "peri/lps",
+                "peri/ves",
+                "peri/eps",
+                "peri/cauchy",
+            ],
             reads: FAMILIES | VOLUME | MASK,
             value: |w, f| {
                 let damages = f.damages(w.volumes());

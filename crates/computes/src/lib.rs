@@ -40,6 +40,7 @@ mod pe;
 mod pe_atom;
 mod peri_energy_atom;
 mod peri_measures;
+mod peri_state_atom;
 mod plasticity_atom;
 mod pressure;
 pub mod property_atom;
@@ -121,6 +122,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &peri_measures::CauchyAtom,
     &peri_measures::DefgradAtom,
     &peri_measures::StrainAtom,
+    &peri_state_atom::PeriStateAtom,
     &plasticity_atom::PlasticityAtom,
     &pressure::Pressure,
     &property_atom::PropertyAtom,

@@ -1,17 +1,19 @@
 //! Computes peri/defgrad/atom, peri/strain/atom and peri/stress/atom: deformation of peridynamic families.
 
+use super::peri_state_atom::need_stress;
 use super::{Compute, ComputeStyle, Share};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::par;
 use perigrain_lang::Args;
 use perigrain_peri::kinematics::{Tensor, determinant, green_lagrange, neo_hooke, von_mises};
 use perigrain_peri::moduli::Elastic;
+use perigrain_peri::stress::State;
 use perigrain_plan::{Op, Stage, When};
 use perigrain_styles::peri_view::view;
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::words::{At, Form, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style, UseKind};
-use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, VOLUME, X, X0};
+use perigrain_world::field::{BOX, FAMILIES, KIND, MASK, SITES, VOLUME, X, X0};
 use perigrain_world::{GroupId, SlotId};
 
 /// `compute … peri/defgrad/atom`.
@@ -69,14 +71,21 @@ impl Style for CauchyAtom {
     fn doc(&self) -> Doc {
         Doc {
             syntax: Syntax::Forms(
-                const { &[Form::behind(OfNumbers::GRAMMAR), Form::behind(OfMaterial::GRAMMAR)] },
+                const {
+                    &[
+                        Form::behind(OfNumbers::GRAMMAR),
+                        Form::behind(OfMaterial::GRAMMAR),
+                        Form::behind(OfPair::GRAMMAR),
+                    ]
+                },
             ),
-            summary: "Cauchy stress of each peridynamic particle, as of a Neo-Hooke solid that is deformed alike.",
+            summary: "Cauchy stress of each peridynamic particle: that of pair_style peri/cauchy, or as of a Neo-Hooke solid that is deformed alike.",
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
                    λ = K − 2G/3 of Young's modulus `E` and Poisson's ratio `nu`, or of a `material` (Hartmann et al. 2023, equations \
-                   28 to 30).\n\n\
-                   A picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
+                   28 to 30). With `pair` it is the stress of the material under `pair_style peri/cauchy`, of the latest force \
+                   evaluation.\n\n\
+                   That of `neohooke` is a picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
                    of it; compute stress/atom has what bonds bear, torn families included. 0 where there is no F, and but for J where J is not \
                    positive; NaN (or 0) in torn families: `torn` and `damage` as of compute peri/defgrad/atom.",
             example: "compute S all peri/stress/atom neohooke 1.0e5 0.48",
@@ -131,6 +140,21 @@ struct OfMaterial {
     rest: Line,
 }
 
+#[derive(Words)]
+struct OfPair {
+    source: Source,
+    #[word(flatten)]
+    rest: Line,
+}
+
+/// Where the stress comes from.
+#[derive(Words)]
+#[word(what = "source of the stress")]
+enum Source {
+    /// That of `pair_style peri/cauchy`.
+    Pair,
+}
+
 /// The material law of the stress.
 #[derive(Words)]
 #[word(what = "material law of the stress")]
@@ -159,6 +183,10 @@ impl ComputeStyle for StrainAtom {
 
 impl ComputeStyle for CauchyAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
+        if args.peek_text() == "pair" {
+            let OfPair { source: Source::Pair, rest } = read(args, cx)?;
+            return declared(Measure::Own, &rest, cx);
+        }
         let (solid, rest) = if args.peek_at(1).is_some_and(|w| w.text == "material") {
             let OfMaterial { law: Law::Neohooke, material: Named::Material(solid), rest } = read(args, cx)?;
             (solid, rest)
@@ -196,7 +224,7 @@ fn declared(measure: Measure, line: &Line, cx: &BuildCx) -> Result<Box<dyn Compu
     let value = if matches!(line.torn, Gap::Zero) { 0.0 } else { f64::NAN };
     let torn = Torn { most: line.damage.0, value };
     super::need_bonds(measure.name(), cx)?;
-    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, measure, torn }))
+    Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, span: cx.span, measure, torn }))
 }
 
 /// Output for families with too few bonds to define a deformation gradient.
@@ -213,7 +241,12 @@ struct Torn {
 enum Measure {
     Gradient,
     Strain,
-    Stress { bulk: f64, shear: f64 },
+    Stress {
+        bulk: f64,
+        shear: f64,
+    },
+    /// Of the pair style.
+    Own,
 }
 
 impl Measure {
@@ -221,7 +254,7 @@ impl Measure {
         match self {
             Self::Gradient => "peri/defgrad/atom",
             Self::Strain => "peri/strain/atom",
-            Self::Stress { .. } => "peri/stress/atom",
+            Self::Stress { .. } | Self::Own => "peri/stress/atom",
         }
     }
 
@@ -229,12 +262,12 @@ impl Measure {
         match self {
             Self::Gradient => 10,
             Self::Strain => 6,
-            Self::Stress { .. } => 8,
+            Self::Stress { .. } | Self::Own => 8,
         }
     }
 
-    /// Fills a row of zeros.
-    fn put(self, f: &Tensor, row: &mut [f64]) {
+    /// Fills a row of zeros; `own` is what the pair style has of the particle.
+    fn put(self, f: &Tensor, own: impl FnOnce() -> Option<State>, row: &mut [f64]) {
         match self {
             Self::Gradient => {
                 row[..9].copy_from_slice(f.as_flattened());
@@ -248,6 +281,13 @@ impl Measure {
                     row[6] = von_mises(&stress);
                 }
             }
+            Self::Own => {
+                row[7] = determinant(f);
+                let Some(state) = own().filter(|_| row[7] > 0.0) else { return };
+                let stress = state.stress.map(|tau| tau / row[7]);
+                row[..6].copy_from_slice(&stress);
+                row[6] = von_mises(&stress);
+            }
         }
     }
 }
@@ -256,6 +296,7 @@ impl Measure {
 struct Declared {
     id: String,
     group: GroupId,
+    span: Span,
     measure: Measure,
     torn: Torn,
 }
@@ -265,35 +306,35 @@ impl Compute for Declared {
         Shape { atom: Some(self.measure.columns()), ..Shape::default() }
     }
 
-    fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+    fn op(&self, cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
+        let mut reads = X | FAMILIES | VOLUME | MASK | BOX | KIND | X0;
+        if matches!(self.measure, Measure::Own) {
+            need_stress(&self.id, self.span, cx)?;
+            reads = reads | SITES;
+        }
         let (bit, measure, width) = (self.group.bit(), self.measure, self.measure.columns());
         let torn = self.torn;
-        Ok(fill(
-            &self.id,
-            &Wanted { slot, stage, when },
-            X | FAMILIES | VOLUME | MASK | BOX | KIND | X0,
-            move |w, _, out| {
-                out.cols = width;
-                out.atom.clear();
-                out.atom.resize(width * w.n(), 0.0);
-                let Some(families) = &*w.families else { return Ok(()) };
-                let view = view(w)?;
-                let rows = par::Rows { data: &mut out.atom[..], width };
-                par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
-                    for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
-                        if mask & bit == 0 {
-                            continue;
-                        }
-                        if families.torn(&view, start + k, torn.most) {
-                            row.fill(torn.value);
-                        } else if let Some(f) = families.gradient(&view, start + k) {
-                            measure.put(&f, row);
-                        }
+        Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
+            out.cols = width;
+            out.atom.clear();
+            out.atom.resize(width * w.n(), 0.0);
+            let Some(families) = &*w.families else { return Ok(()) };
+            let view = view(w)?;
+            let rows = par::Rows { data: &mut out.atom[..], width };
+            par::each((rows, &w.particles.mask[..]), |start, (rows, mask)| {
+                for (k, (row, mask)) in rows.data.chunks_exact_mut(width).zip(mask).enumerate() {
+                    if mask & bit == 0 {
+                        continue;
                     }
-                });
-                Ok(())
-            },
-        ))
+                    if families.torn(&view, start + k, torn.most) {
+                        row.fill(torn.value);
+                    } else if let Some(f) = families.gradient(&view, start + k) {
+                        measure.put(&f, || families.state(start + k), row);
+                    }
+                }
+            });
+            Ok(())
+        }))
     }
 }
 

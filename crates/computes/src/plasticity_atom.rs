@@ -1,4 +1,4 @@
-//! compute plasticity/atom: plastic flow of each particle of an elastic, perfectly plastic body.
+//! compute plasticity/atom: plastic flow of each particle.
 
 use super::family_values::{Known, of_families};
 use super::{Compute, ComputeStyle};
@@ -18,10 +18,11 @@ impl Style for PlasticityAtom {
     fn doc(&self) -> Doc {
         Doc {
             syntax: Syntax::Behind(Grammar::NONE),
-            summary: "Accumulated plastic multiplier of each particle under pair_style peri/eps.",
-            text: "Per-atom vector: the sum of Δλ = (m/15G)(norm/limit − 1) over the steps in which the particle has flowed, \
+            summary: "Accumulated plastic flow of each particle under pair_style peri/eps or peri/cauchy.",
+            text: "Per-atom vector. Under `pair_style peri/eps` the sum of Δλ = (m/15G)(norm/limit − 1) over the steps in which the particle has flowed, \
                    as LAMMPS defines it (volume²/force·length² with ω = 1/|ξ|). 0 before the first run and outside the group. \
-                   Needs `pair_style peri/eps` or `bond_style bpm/peri`.",
+                   Under `pair_style peri/cauchy` the equivalent plastic strain, without dimension. \
+                   Needs one of the two or `bond_style bpm/peri`.",
             example: "compute flow all plasticity/atom",
         }
     }
@@ -31,7 +32,7 @@ impl ComputeStyle for PlasticityAtom {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Compute>> {
         let known = Known {
             name: self.name(),
-            by: &["peri/eps"],
+            by: &["peri/eps", "peri/cauchy"],
             reads: FAMILIES | SITES | MASK,
             value: |_, f| Box::new(|i| f.plastic_strain(i)),
         };

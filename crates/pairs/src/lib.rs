@@ -41,6 +41,7 @@ pub const PAIRS: &[&dyn PairStyle] = &[
     &granular::GranularStyle,
     &hybrid::Hybrid,
     &hybrid::Overlay,
+    &peri::PeriCauchy,
     &peri::PeriEps,
     &peri::PeriLps,
     &peri::PeriPmb,

@@ -48,6 +48,10 @@ impl Families {
         if let Some(share) = self.breaking_share {
             keep_weakest(&mut broken, share);
         }
+        if self.any_spent() {
+            let spared = |p: u32| self.lasting.get(p as usize).copied().unwrap_or(false);
+            self.find_spent(view, &spared, &mut broken);
+        }
         if agreed.is_some_and(|agreed| agreed.breaks || agreed.strained) {
             broken = broken_everywhere(broken);
         }

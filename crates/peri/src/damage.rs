@@ -210,6 +210,7 @@ impl Families {
         }
         self.place = moved(&self.place, old_to_new, n, u32::MAX);
         self.reference = self.reference.take().map(|r| moved(&r, old_to_new, n, [0.0; 3]));
+        self.continua().for_each(|(own, _)| own.inverse.clear());
         let loose = self.near.loose.iter();
         self.near.loose = loose.filter_map(|&(p, x)| old_to_new[p as usize].map(|p| (p, x))).collect();
         self.forget_near();

@@ -136,6 +136,7 @@ impl Families {
             trailing: 0.0,
             late: 0.0,
             heat: 0.0,
+            lost: [0.0; 2],
             relaxing: None,
             counts_losses: false,
             breaking_share: None,
@@ -348,6 +349,9 @@ impl Families {
         let cell = &self.cell(view);
         self.sweep_lattices(view, f, (advance, tallied.is_some()), shares.as_mut());
         self.sweep_list(view, f, (advance, tallied.is_some()), (cell, shares.as_mut()));
+        if advance {
+            self.add_lost();
+        }
         if advance && self.counts_losses {
             self.count_heat(view, cell);
         }

@@ -31,6 +31,7 @@ mod pass;
 mod pulled;
 mod released;
 mod seen;
+pub use cauchy::stress;
 pub mod setup;
 pub mod shares;
 pub mod stretches;

@@ -62,10 +62,8 @@ impl Families {
             _ if self.options.compat_lammps => {}
             Losses::None => {}
             Losses::Sites => {
-                let lost = self.states().flat_map(|state| std::mem::take(&mut state.continuum.lost));
-                let [heat, released] = lost.fold([0.0; 2], |sum, lost| [sum[0] + lost[0], sum[1] + lost[1]]);
-                self.heat += heat;
-                self.released += released;
+                self.heat += self.lost[0];
+                self.released += self.lost[1];
             }
             Losses::Flow => {
                 if !self.flowed() {
@@ -109,6 +107,12 @@ impl Families {
                 self.relax(power);
             }
         }
+    }
+
+    /// Adds up what flow and damage of materials have taken in this step.
+    pub(super) fn add_lost(&mut self) {
+        let add = |sum: [f64; 2], lost: &[f64; 2]| [sum[0] + lost[0], sum[1] + lost[1]];
+        self.lost = self.states().fold([0.0; 2], |sum, state| state.continuum.lost.iter().fold(sum, add));
     }
 
     /// Adds the heat of a step at whose end the power is this.

@@ -2,7 +2,8 @@
 
 use super::scatter::Scatter;
 use super::{Pair, Solid, bond_weights, breaking, pulled, reunion};
-use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
+use perigrain_constitutive::Failure;
 use perigrain_peri::families::{
     Criterion, Families, FamilyOptions, ForceUnit, PeriTally, PmbCoeff, PmbTable,
 };
@@ -135,7 +136,15 @@ impl Op for Force {
             w.rebuild.due = true;
         }
         w.particles.f = f;
-        let (energy, virial) = (sums.energy, sums.virial);
+        let (mut energy, virial) = (sums.energy, sums.virial);
+        if let Some((p, why)) = families.fault() {
+            if !t.trial {
+                return Err(self.without_stress(w, p as usize, why));
+            }
+            // A place that is tried in vain: whatever tries it goes less far.
+            w.particles.f[p as usize] = [f64::NAN; 3];
+            energy = f64::INFINITY;
+        }
         (w.tally.atom, w.tally.atom_virial) = (atoms, virials);
         w.tally.add_pair(self.tally, energy);
         for (total, part) in w.tally.virial.iter_mut().zip(virial) {
@@ -157,6 +166,31 @@ impl Op for Force {
 }
 
 impl Force {
+    /// The error of a particle whose material has no stress for how it is deformed.
+    fn without_stress(&self, w: &World, p: usize, why: Failure) -> Diagnostics {
+        let (tag, kind) = (w.particles.tag[p], w.particles.kind[p]);
+        let text =
+            format!("pair_style {} has no stress for particle {tag} (type {kind}): {why}", self.style.name);
+        Diagnostic::error(Code::HALTED, None, text)
+            .help("a shorter timestep, or bonds that break before (`s00`): a particle has been squeezed or torn too far in one step")
+            .into()
+    }
+
+    /// Refuses families whose bonds lie in a plane, under correspondence.
+    fn check_flat(&self, w: &World, families: &Families) -> Result<()> {
+        let Some(p) = families.flat(&view(w)?) else { return Ok(()) };
+        let (tag, kind) = (w.particles.tag[p], w.particles.kind[p]);
+        let text = format!(
+            "the bonds of particle {tag} (type {kind}) lie in a plane: it has no deformation gradient"
+        );
+        Err(Diagnostic::error(Code::CONFLICT, None, text)
+            .help(format!(
+                "pair_style {} needs bonds in three independent directions: two layers of particles or more; peri/lps needs fewer",
+                self.style.name
+            ))
+            .into())
+    }
+
     /// Takes the coefficients that a fix has changed.
     fn adapt(&mut self, w: &mut World) -> Result<()> {
         self.adapted = w.adaptations();
@@ -232,6 +266,7 @@ impl Force {
             None => {
                 let law = self.style.law.clone();
                 let families = Families::build_of(&view(w)?, &table, self.options, law)?;
+                self.check_flat(w, &families)?;
                 bond_weights::leave_room(&self.style, &families, w)?;
                 self.note_lone(w, &families);
                 self.note_doubles(w, &families);

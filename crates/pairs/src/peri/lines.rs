@@ -29,6 +29,17 @@ pub fn forms(law: &'static Style, own: &'static Grammar, options: bool) -> &'sta
     forms.leak()
 }
 
+/// The lines of a style whose coefficients come from materials alone: `own` behind its name, and `peri_modify`.
+pub fn of_materials(law: &'static Style, own: &'static Grammar) -> &'static [Form] {
+    let forms = vec![
+        Form::behind(own),
+        Form::headed("pair_coeff I J material", grammar(vec![MATERIAL], keywords(law))),
+        Form::headed("pair_coeff I J mix", Blend::GRAMMAR),
+        Form::headed("peri_modify", Options::GRAMMAR),
+    ];
+    forms.leak()
+}
+
 /// The lines of a style of bonds: `own` behind its name, and coefficients of each law behind its name.
 pub fn of_bonds(laws: impl Iterator<Item = &'static Style>, own: &'static Grammar) -> &'static [Form] {
     let of = |law: &'static Style| {

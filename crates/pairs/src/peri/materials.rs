@@ -6,6 +6,7 @@ use super::softening::last_stretch;
 use super::{Coeff, short_range, unloading};
 use crate::TypePairs;
 use perigrain_base::diag::{Code, Diagnostic, Result, Severity, Span, fail, nearest};
+use perigrain_constitutive::Material as Stress;
 use perigrain_lang::Args;
 use perigrain_peri::families::{Moduli, PmbCoeff};
 use perigrain_peri::law::Style;
@@ -29,6 +30,8 @@ struct Stuff {
     law: &'static Style,
     /// What a state-based law needs besides K and G.
     extra: Moduli,
+    /// The law of stress and strain, under correspondence.
+    stress: Option<Stress>,
 }
 
 /// The materials of a peridynamic body's types.
@@ -76,6 +79,11 @@ impl Materials {
     /// The density of a type that has a material.
     pub fn density(&self, kind: u16) -> Option<f64> {
         self.types.get(&kind).map(|s| s.density)
+    }
+
+    /// The law of stress and strain of a type, under correspondence.
+    pub fn stress(&self, kind: u16) -> Option<Stress> {
+        self.types.get(&kind).and_then(|s| s.stress.clone())
     }
 
     /// Young's modulus of a type that has a material.
@@ -181,6 +189,7 @@ impl Stuff {
                 peak: rule.mean(self.extra.peak, other.extra.peak),
                 ..self.extra
             },
+            stress: None,
             ..*self
         })
     }
@@ -266,7 +275,7 @@ fn stuff(law: &'static Style, args: &mut Args, cx: &BuildCx) -> Result<Stuff> {
     };
     cx.uses(UseKind::Material, &id.text);
     let mut horizon = None;
-    let mut s = of(m, law);
+    let mut s = Stuff { stress: stress(m, law), ..of(m, law) };
     let mut chosen = false;
     let keywords = keywords(law);
     let known: Vec<&'static str> = keywords.iter().map(|keyword| keyword.word).collect();
@@ -362,7 +371,15 @@ fn of(m: &Material, law: &'static Style) -> Stuff {
             stress_free: m.thermal.stress_free,
             ..Moduli::default()
         },
+        stress: None,
     }
+}
+
+/// The law of stress and strain of a material, under a law that needs it.
+///
+/// The line of a material has been read with its law: a number that does not fit is one that is not known yet, while a deck is checked.
+fn stress(m: &Material, law: &Style) -> Option<Stress> {
+    law.correspondence.then(|| m.constitutive().ok()).flatten()
 }
 
 /// The lattice spacing that horizons are counted in.
@@ -413,6 +430,7 @@ mod tests {
             horizon: 1.5e-3,
             law: perigrain_peri::law::PMB.style(),
             extra: Moduli::default(),
+            stress: None,
         }
     }
 

@@ -3,6 +3,7 @@
 mod bond_probe;
 mod bond_weights;
 mod breaking;
+mod cauchy;
 mod eps;
 mod force;
 mod horizon;
@@ -22,6 +23,7 @@ mod ves;
 use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
 use bond_probe::BondProbe;
 use breaking::Breaking;
+pub use cauchy::PeriCauchy;
 pub use eps::PeriEps;
 use force::Force;
 pub use lines::of_bonds;
@@ -99,6 +101,11 @@ fn unloading(word: &str) -> Option<LawKind> {
 
 /// Starts a style: particles must have volumes.
 fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair>> {
+    Ok(Box::new(solid(name, kind, cx)?))
+}
+
+/// A style without coefficients yet.
+fn solid(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Solid> {
     if !cx.world.particles.style.peri {
         return Err(Diagnostic::error(
             Code::WRONG_ORDER,
@@ -110,7 +117,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
     }
     let influence = if kind.bond_based { Influence::One } else { Influence::default() };
     let law = Law { kind, influence, moduli: vec![Moduli::default(); cx.world.types], ..Law::default() };
-    Ok(Box::new(Solid {
+    Ok(Solid {
         name,
         table: PmbTable::new(cx.world.types),
         law,
@@ -126,7 +133,7 @@ fn start(name: &'static str, kind: LawKind, cx: &BuildCx) -> Result<Box<dyn Pair
         lasting: vec![],
         no_repulsion: false,
         reunite: None,
-    }))
+    })
 }
 
 /// Coefficients of one line: of the bonds, and of the ends where the law is state-based.
@@ -292,6 +299,12 @@ impl Pair for Solid {
         let span = args.here();
         let (coeff, moduli) = match self.materials.coeff(self.law.kind.style(), pairs, args, cx)? {
             Some(coeff) => coeff,
+            None if self.law.kind.correspondence => {
+                let text = format!("{} takes its coefficients from materials", self.name);
+                return Err(Diagnostic::error(Code::BAD_VALUE, span, text)
+                    .help("pair_coeff I J material ID horizon H, after `material ID …`")
+                    .into());
+            }
             None => {
                 self.raw = true;
                 bond_weights::needs_materials(self, span)?;
@@ -312,6 +325,8 @@ impl Pair for Solid {
             self.table.set(i, j, coeff).map_err(|e| e.at(span))?;
             if i == j {
                 self.law.moduli[usize::from(i) - 1] = moduli;
+                self.law.materials.resize(self.table.types(), None);
+                self.law.materials[usize::from(i) - 1] = self.materials.stress(i);
             }
             let types = self.table.types();
             let Some(edge) = self.law.kind.edge.map(|edge| edge(&moduli)) else { continue };
@@ -395,6 +410,10 @@ impl Pair for Solid {
                 // Bonds sum up to 2π c δ² over a whole ball (Silling & Askari 2005, equation 34).
                 return all.map(|p| std::f64::consts::PI * p.c * p.horizon * p.horizon).reduce(f64::max);
             }
+            if self.law.kind.correspondence {
+                let shortest = all.map(|p| p.horizon).reduce(f64::min)?;
+                return Some(self.law.of(i).thick_step(shortest).powi(-2));
+            }
             // Fitted to the exact limits of the cubic lattice, 1.48 dx/√(K/ρ) at nu = 0.25 and 3.39 at 0.48 for a
             // horizon of 3.015 dx (Bloch waves, weights of LAMMPS), less five per cent.
             let m = self.law.of(i);
@@ -404,6 +423,9 @@ impl Pair for Solid {
         let ftm2v = w.settings.units.constants().ftm2v;
         let surely = |i: u16| match self.law.kind.bond_based {
             true => stiffest(i),
+            false if self.law.kind.correspondence => {
+                Some(self.law.of(i).thin_step(w.lattice.spacing[0]).powi(-2))
+            }
             false => {
                 let horizons = (1..=types).filter_map(|j| self.table.get(i, j)).map(|p| p.horizon);
                 Some(self.law.of(i).fastest(horizons.reduce(f64::min)?))

@@ -1,5 +1,6 @@
 //! Shape tensors of families, K = Σ ω w xi⊗xi V over living bonds, and their inverses.
 
+use crate::cauchy::LAST;
 use crate::families::{Families, PeriView};
 use crate::kinematics::{HINGE, Shapes, Tensor, inverse, least_eigenvalue};
 use perigrain_base::par;
@@ -17,8 +18,9 @@ impl Families {
         let least = |p: &u32| shapes.get(*p as usize).map_or(0.0, |shapes| least(&shapes.whole));
         for (own, particle) in self.continua() {
             own.whole = particle.iter().map(least).collect();
-            own.memory.clear();
+            (own.memory, own.last) = (vec![], vec![]);
             if remembers {
+                own.last = vec![0.0; LAST * particle.len()];
                 own.memory = particle.iter().flat_map(|_| Memory::default().numbers()).collect();
             }
             own.inverse.clear();

@@ -1,5 +1,6 @@
 //! Between the sweeps of correspondence: from Σ ω w eta⊗xi V to what forces read at both ends of a bond.
 
+use crate::cauchy::{Continuum, LAST};
 use crate::families::lattice::PAD;
 use crate::law::settle::{Settling, Sites};
 use crate::law::state::SiteState;
@@ -86,6 +87,17 @@ fn kirchhoff(p: &Mat3, f: &Mat3) -> [f64; 6] {
     SIX.map(|(a, b)| p[a][0] * f[b][0] + p[a][1] * f[b][1] + p[a][2] * f[b][2])
 }
 
+/// What the sites of a chunk bring about.
+#[derive(Clone, Default)]
+struct Made {
+    /// Heat, and fracture energy of damage: over volumes.
+    lost: [f64; 2],
+    /// Sites that bear nothing any more.
+    spent: Vec<u32>,
+    /// The first site without a stress.
+    fault: Option<(u32, Failure)>,
+}
+
 /// Settles all sites of a body; those without bonds, or with torn families, exert nothing. What materials remember moves on in an evaluation
 /// that advances.
 pub(crate) fn settle(
@@ -96,70 +108,56 @@ pub(crate) fn settle(
     rules: &Rules,
 ) {
     let SiteState { weighted, columns, sums, continuum, .. } = state;
+    let Continuum { memory, last, energy, stress, inverse, whole, .. } = continuum;
     let n = sites.count;
-    continuum.energy.resize(n, 0.0);
-    continuum.stress.resize(n, [0.0; 6]);
-    let mut faults: Vec<Option<(u32, Failure)>> = vec![None; n.div_ceil(CHUNK)];
-    continuum.lost.clear();
-    continuum.lost.resize(n.div_ceil(CHUNK), [0.0; 2]);
-    let keep = settling.advance && !continuum.memory.is_empty();
-    let (columns, memory) = (Shared::new(columns), Shared::new(&mut continuum.memory));
-    let (energy, stress) = (Shared::new(&mut continuum.energy), Shared::new(&mut continuum.stress));
-    let (lost, faults_of) = (Shared::new(&mut continuum.lost), Shared::new(&mut faults));
-    let (weighted, sums, inverse): (&[f64], &[f64], &[[f64; 6]]) = (weighted, sums, &continuum.inverse);
+    energy.resize(n, 0.0);
+    stress.resize(n, [0.0; 6]);
+    let remembers = !memory.is_empty();
+    let (columns, memory, last) = (Shared::new(columns), Shared::new(memory), Shared::new(last));
+    let (energy, stress) = (Shared::new(energy), Shared::new(stress));
+    let mut made = vec![Made::default(); n.div_ceil(CHUNK)];
+    let all = Shared::new(&mut made);
     par::for_chunks(n, |range| {
         let chunk = range.start / CHUNK;
         // SAFETY: each chunk of sites is settled once, and has these entries to itself.
-        let (energy, stress, lost, fault) = unsafe {
-            (
-                energy.get(range.clone()),
-                stress.get(range.clone()),
-                &mut lost.get(chunk..chunk + 1)[0],
-                &mut faults_of.get(chunk..chunk + 1)[0],
-            )
+        let (energy, stress, made) = unsafe {
+            (energy.get(range.clone()), stress.get(range.clone()), &mut all.get(chunk..chunk + 1)[0])
         };
         let mut size = Size::default();
         for (k, site) in range.enumerate() {
             let p = sites.particle[site] as usize;
-            let shape = &inverse[site];
-            let mut known = None;
-            if let Some(kind) = sites.kind.get(p).filter(|_| shape[0] > 0.0) {
-                let h: Mat3 = std::array::from_fn(|a| std::array::from_fn(|c| sums[places.at(site, a, c)]));
-                let volume = rules.volume[p];
-                let moment = Moment {
-                    dt: rules.dt,
-                    temperature: None,
-                    spacing: size.of(volume),
-                    advance: settling.advance,
-                };
-                let gamma = rules.control * settling.stiffness[usize::from(*kind) - 1].shear
-                    / weighted[sites.pad + site];
-                let row = match memory.is_empty() {
-                    true => None,
-                    // SAFETY: each site is settled once.
-                    false => {
-                        Some(unsafe { memory.get(site * Memory::NUMBERS..(site + 1) * Memory::NUMBERS) })
-                    }
-                };
-                let before = row.as_deref().and_then(|row| row.first_chunk());
-                let before = before.map_or_else(Memory::default, |row| Memory::from_numbers(*row));
-                let material = rules.materials.get(usize::from(*kind) - 1).and_then(Option::as_ref);
-                match settled(material, &h, (shape, gamma), &before, &moment) {
-                    Ok(own) => {
-                        if let Some(row) = row.filter(|_| keep) {
-                            row.copy_from_slice(&own.response.memory.numbers());
-                        }
-                        lost[0] += own.response.dissipated * volume;
-                        lost[1] += own.response.released * volume;
-                        known = Some(own);
-                    }
-                    Err(why) => {
-                        fault.get_or_insert((site as u32, why));
-                    }
+            // SAFETY: each site is settled once, and its rows are there where materials remember.
+            let mut past = remembers.then(|| unsafe {
+                let row = |numbers: usize| site * numbers..(site + 1) * numbers;
+                Past { memory: memory.get(row(Memory::NUMBERS)), last: last.get(row(LAST)) }
+            });
+            let own = match sites.kind.get(p).filter(|_| inverse[site][0] > 0.0) {
+                Some(kind) => {
+                    let kind = usize::from(*kind) - 1;
+                    let bonds = Bonds {
+                        h: std::array::from_fn(|a| std::array::from_fn(|c| sums[places.at(site, a, c)])),
+                        inverse: &inverse[site],
+                        gamma: rules.control * settling.stiffness[kind].shear / weighted[sites.pad + site],
+                    };
+                    let material = rules.materials.get(kind).and_then(Option::as_ref);
+                    let volume = rules.volume[p];
+                    let (dt, spacing) = (rules.dt, size.of(volume));
+                    let moment = Moment { dt, temperature: None, spacing, advance: settling.advance };
+                    let own = settled(material, &bonds, past.as_mut(), &moment).unwrap_or_else(|why| {
+                        made.fault.get_or_insert((site as u32, why));
+                        Settled::default()
+                    });
+                    made.lost[0] += own.dissipated * volume;
+                    made.lost[1] += own.released * volume;
+                    own
                 }
+                None => Settled::default(),
+            };
+            let torn = inverse[site][0] <= 0.0 && whole[site] > 0.0;
+            if torn || past.is_some_and(|past| past.remembered().damage >= 1.0) {
+                made.spent.push(site as u32);
             }
-            let own = known.unwrap_or_default();
-            (energy[k], stress[k]) = (own.response.energy, own.stress);
+            (energy[k], stress[k]) = (own.energy, own.stress);
             // SAFETY: places differ from site to site, and lie in the columns.
             unsafe {
                 for (a, c) in (0..9).map(|k| (k / 3, k % 3)) {
@@ -169,7 +167,9 @@ pub(crate) fn settle(
             }
         }
     });
-    continuum.fault = faults.into_iter().flatten().next();
+    continuum.lost = made.iter().map(|made| made.lost).collect();
+    continuum.spent = made.iter().flat_map(|made| &made.spent).copied().collect();
+    continuum.fault = made.iter().find_map(|made| made.fault);
 }
 
 /// The edge of a cube of the last volume that was asked for.
@@ -188,7 +188,48 @@ impl Size {
     }
 }
 
-/// A settled site.
+/// What the bonds of a site come to.
+struct Bonds<'a> {
+    /// H = Σ ω w eta⊗xi V.
+    h: Mat3,
+    /// K⁻¹.
+    inverse: &'a [f64; 6],
+    /// γ.
+    gamma: f64,
+}
+
+/// What a site remembers of its material, and of the last step that advanced.
+struct Past<'a> {
+    /// Of its material.
+    memory: &'a mut [f64],
+    /// E, P and W of the last step.
+    last: &'a mut [f64],
+}
+
+impl Past<'_> {
+    fn remembered(&self) -> Memory {
+        self.memory.first_chunk().map_or_else(Memory::default, |row| Memory::from_numbers(*row))
+    }
+
+    /// P and W of the last step, if E was this.
+    fn answered(&self, e: &Mat3) -> Option<(Mat3, f64)> {
+        let (known, rest) = self.last.split_at(9);
+        let (p, w) = rest.split_at(9);
+        let same = known == e.as_flattened();
+        same.then(|| (std::array::from_fn(|a| std::array::from_fn(|c| p[3 * a + c])), w[0]))
+    }
+
+    /// Keeps what a step that advances has come to.
+    fn keep(&mut self, e: &Mat3, response: &Response) {
+        self.memory.copy_from_slice(&response.memory.numbers());
+        self.last[..9].copy_from_slice(e.as_flattened());
+        self.last[9..18].copy_from_slice(response.piola.as_flattened());
+        self.last[18] = response.energy;
+    }
+}
+
+/// A settled site; by itself one that exerts nothing.
+#[derive(Default)]
 struct Settled {
     /// M = P K⁻¹ − γ E.
     pull: Mat3,
@@ -196,43 +237,54 @@ struct Settled {
     gamma: f64,
     /// P Fᵀ.
     stress: [f64; 6],
-    response: Response,
+    /// W.
+    energy: f64,
+    /// Plastic work of the step.
+    dissipated: f64,
+    /// What damage has set free in the step.
+    released: f64,
 }
 
-impl Default for Settled {
-    fn default() -> Self {
-        Self { pull: [[0.0; 3]; 3], gamma: 0.0, stress: [0.0; 6], response: rest(&Memory::default()) }
+impl Settled {
+    /// A site with this gradient, stress and energy.
+    fn new(bonds: &Bonds, e: &Mat3, piola: &Mat3, energy: f64) -> Self {
+        let mut pull = times(piola, bonds.inverse);
+        for (row, e) in pull.iter_mut().zip(e) {
+            row.iter_mut().zip(e).for_each(|(m, e)| *m -= bonds.gamma * e);
+        }
+        let stress = kirchhoff(piola, &deformation(e));
+        Self { pull, gamma: bonds.gamma, stress, energy, ..Self::default() }
     }
 }
 
-/// The response of a site at which nothing has happened.
-fn rest(memory: &Memory) -> Response {
-    let zero = [[0.0; 3]; 3];
-    Response { piola: zero, memory: *memory, energy: 0.0, dissipated: 0.0, released: 0.0, mises: 0.0 }
-}
-
-/// Settles one site from its sums H, its K⁻¹ and γ.
+/// Settles one site; what it remembers moves on where the moment advances.
 #[inline]
 fn settled(
     material: Option<&Material>,
-    h: &Mat3,
-    (inverse, gamma): (&[f64; 6], f64),
-    memory: &Memory,
+    bonds: &Bonds,
+    past: Option<&mut Past>,
     moment: &Moment,
 ) -> Result<Settled, Failure> {
-    if *h == [[0.0; 3]; 3] && *memory == Memory::default() {
-        // At rest, to the last bit.
-        return Ok(Settled { gamma, ..Settled::default() });
-    }
-    let e = gradient(h, inverse);
-    let f = deformation(&e);
-    let response = match material {
-        Some(material) => material.respond(&f, memory, moment)?,
-        None => rest(memory),
+    let at_rest = Settled { gamma: bonds.gamma, ..Settled::default() };
+    let Some(material) = material else { return Ok(at_rest) };
+    let Some(past) = past else {
+        if bonds.h == [[0.0; 3]; 3] {
+            // To the last bit.
+            return Ok(at_rest);
+        }
+        let e = gradient(&bonds.h, bonds.inverse);
+        let response = material.respond(&deformation(&e), &Memory::default(), moment)?;
+        return Ok(Settled::new(bonds, &e, &response.piola, response.energy));
     };
-    let mut pull = times(&response.piola, inverse);
-    for (row, e) in pull.iter_mut().zip(&e) {
-        row.iter_mut().zip(e).for_each(|(m, e)| *m -= gamma * e);
+    let e = gradient(&bonds.h, bonds.inverse);
+    let memory = past.remembered();
+    if let Some((piola, energy)) = past.answered(&e).filter(|_| !moment.advance || e == [[0.0; 3]; 3]) {
+        return Ok(Settled::new(bonds, &e, &piola, energy));
     }
-    Ok(Settled { pull, gamma, stress: kirchhoff(&response.piola, &f), response })
+    let response = material.respond(&deformation(&e), &memory, moment)?;
+    if moment.advance {
+        past.keep(&e, &response);
+    }
+    let Response { dissipated, released, .. } = response;
+    Ok(Settled { dissipated, released, ..Settled::new(bonds, &e, &response.piola, response.energy) })
 }

@@ -100,6 +100,9 @@ pub struct Families {
     /// What relaxing and flowing bonds have turned into heat, as far as it was counted [energy].
     #[serde(default)]
     pub heat: f64,
+    /// What flow and damage of materials took in the last step that advanced: heat, and fracture energy [energy].
+    #[serde(skip)]
+    pub lost: [f64; 2],
     /// The power at which bonds relaxed at the last step that was counted.
     #[serde(default)]
     pub relaxing: Option<f64>,

@@ -65,12 +65,16 @@ impl Families {
         self.of_site(i, |state| &state.theta)
     }
 
-    /// The accumulated plastic multiplier of a particle.
+    /// The accumulated plastic multiplier of a particle; under correspondence its equivalent plastic strain.
     pub fn plastic_strain(&self, i: usize) -> f64 {
+        if self.law.kind.correspondence {
+            return self.state(i).map_or(0.0, |state| state.memory.strain);
+        }
         self.of_site(i, |state| &state.plastic)
     }
 
-    fn of_site(&self, i: usize, column: impl Fn(&SiteState) -> &Vec<f64>) -> f64 {
+    /// A number of a particle's site; its place among columns with unused entries is found.
+    pub(crate) fn of_site(&self, i: usize, column: impl Fn(&SiteState) -> &Vec<f64>) -> f64 {
         let place = self.place.get(i).copied().unwrap_or(u32::MAX);
         if place == u32::MAX {
             return 0.0;

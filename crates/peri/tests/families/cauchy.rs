@@ -1,7 +1,7 @@
 //! Correspondence: affine fields, forces against the energy, conservation, layouts, waves, breaking, memory.
 
 use perigrain_base::par;
-use perigrain_constitutive::{Elastic, Law as Stress, Material, Moment};
+use perigrain_constitutive::{Elastic, Flow, Hardening, Law as Stress, Material, Moment};
 use perigrain_peri::families::*;
 
 use super::layouts::Scatter;
@@ -245,6 +245,80 @@ fn bits_are_the_same_for_any_threads_and_without_skipping() {
         }
         par::set_threads(1);
         assert!(bits.windows(2).all(|b| b[0] == b[1]), "{layout:?}");
+    }
+}
+
+/// A metal that yields early.
+fn soft_metal() -> Stress {
+    Stress::Plastic { flow: Flow::Mises(Hardening::Linear { yields: 2e7, modulus: 1e9 }), damage: None }
+}
+
+#[test]
+fn trials_use_what_is_remembered_and_write_nothing() {
+    for layout in [Layout::Auto, Layout::List] {
+        let mut ends = vec![];
+        for trials in [false, true] {
+            let mut s = pulled(layout, soft_metal(), 0.02);
+            s.setup();
+            for step in 0..12 {
+                s.step();
+                if trials && step % 3 == 1 {
+                    let (x, f, energy) = (s.x.clone(), s.f.clone(), s.energy);
+                    for part in [0.3, -0.2, 0.1] {
+                        s.x.iter_mut().for_each(|x| x[0] += part * x[1]);
+                        s.forces(false);
+                        s.x.clone_from(&x);
+                    }
+                    // Looking again where the step has been: on the yield surface, to rounding of the return.
+                    s.forces(false);
+                    let off = s.f.iter().zip(&f).map(|(a, b)| [0, 1, 2].map(|k| a[k] - b[k]));
+                    let off = largest(&off.collect::<Vec<_>>());
+                    assert!(off < 1e-9 * largest(&f), "{off:e}");
+                    assert!((s.energy / energy - 1.0).abs() < 1e-9);
+                    (s.f, s.energy) = (f, energy);
+                }
+            }
+            let families = s.families.as_ref().unwrap();
+            let flowed: Vec<f64> = (0..s.x.len()).map(|i| families.plastic_strain(i)).collect();
+            assert!(flowed.iter().any(|e| *e > 1e-3));
+            let bits = s.x.iter().chain(&s.v).chain(&s.f).flatten().chain(&flowed).map(|a| a.to_bits());
+            ends.push(bits.collect::<Vec<_>>());
+        }
+        assert!(ends[0] == ends[1], "{layout:?}");
+    }
+}
+
+#[test]
+fn forces_of_what_has_flowed_are_the_derivative_of_the_energy() {
+    for (layout, portable, jitter) in CASES {
+        let mut s = block([6, 5, 5], jitter, layout, soft_metal());
+        s.options.portable = portable;
+        s.setup();
+        bent(&mut s);
+        s.forces(true);
+        // A little of the way back: elastic everywhere. Differences then err by rounding alone.
+        for (x, from) in s.x.iter_mut().zip(&s.x0) {
+            *x = [0, 1, 2].map(|k| x[k] + 1e-3 * (from[k] - x[k]));
+        }
+        s.forces(false);
+        let (f, size) = (s.f.clone(), largest(&s.f));
+        let h = 1e-6 * DX;
+        for (i, k) in [(0, 0), (44, 2), (62, 1), (149, 2)] {
+            let at = s.x[i][k];
+            let mut energy = [0.0; 2];
+            for (energy, side) in energy.iter_mut().zip([h, -h]) {
+                s.x[i][k] = at + side;
+                s.forces(false);
+                *energy = s.energy;
+            }
+            s.x[i][k] = at;
+            let slope = (energy[0] - energy[1]) / (2.0 * h);
+            assert!(
+                (f[i][k] + slope).abs() < 1e-8 * size,
+                "{layout:?} {jitter} {i} {k}: {} {slope}",
+                f[i][k]
+            );
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 mod lattice;
 mod list;
 
-use crate::cauchy::Continuum;
+use crate::cauchy::{Continuum, LAST};
 use crate::families::lattice::{LANES, PAD};
 use crate::families::law::Law;
 use crate::families::{Criterion, Families};
@@ -191,12 +191,17 @@ fn states(state: &SiteState, law: &Style, (count, pad, bonds): (usize, usize, us
 
 /// Whether what so many sites have under correspondence is there for each.
 fn continuum(own: &Continuum, count: usize) -> Fault {
-    let Continuum { memory, whole, energy, stress, .. } = own;
+    let Continuum { memory, last, whole, energy, stress, .. } = own;
     equal("the number of shape tensors is", whole.len(), count)?;
     let all_or_none = |len: usize, all: usize| len == 0 || len == all;
     must(
         all_or_none(memory.len(), Memory::NUMBERS * count),
         "not every site has what its material remembers",
+    )?;
+    equal(
+        "the number of stresses that are remembered is",
+        last.len(),
+        memory.len() / Memory::NUMBERS * LAST,
     )?;
     must(
         all_or_none(energy.len(), count) && stress.len() == energy.len(),
@@ -204,6 +209,7 @@ fn continuum(own: &Continuum, count: usize) -> Fault {
     )?;
     numbers("shape tensors", whole)?;
     numbers("numbers that materials remember", memory)?;
+    numbers("stresses that are remembered", last)?;
     numbers("energies of sites", energy)?;
     numbers("stresses of sites", stress.as_flattened())
 }
