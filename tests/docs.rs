@@ -52,6 +52,7 @@ const BOOK: [&str; 2] = [
      - [Explore at the prompt](howto/prompt.md)\n\
      - [Calibrate to a material](howto/material.md)\n\
      - [A crack from a notch](howto/notch.md)\n\
+     - [Load a body slowly](howto/slow.md)\n\
      - [A ball strikes a plate](howto/impact.md)\n\
      - [Erosion by a stream of grains](howto/erosion.md)\n\
      - [A laminate of unlike plies](howto/laminate.md)\n\

@@ -41,6 +41,7 @@ pub const DECKS: &[(&str, &str)] = decks![
     "peridynamics/bar_wave",
     "peridynamics/tension",
     "peridynamics/beam_frequency",
+    "peridynamics/beam_deflection",
     "peridynamics/breaking_after_flow",
     "peridynamics/plate_impact",
     "peridynamics/kalthoff_winkler",
