@@ -228,7 +228,7 @@ impl Families {
     pub fn change(&self) -> bool {
         let breaks = |c: &PmbCoeff| c.s00.is_finite();
         self.options.criterion.by_itself()
-            || self.law.kind.memory() > 0
+            || self.remembers()
             || self.table.iter().any(breaks)
             || self.of_bonds.iter().any(breaks)
     }

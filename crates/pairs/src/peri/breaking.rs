@@ -58,6 +58,10 @@ pub fn allowed(style: &Solid, span: Span) -> Result<()> {
         let why = "bonds that soften have their fracture energy in their curve";
         return refuse("energy", why, "leave `break` out, or use peri/pmb");
     }
+    if criterion == Criterion::Work && law.correspondence {
+        let why = "energies belong to particles there, not to bonds";
+        return refuse("energy", why, "use `break stress`, `break strain` or `break shear`, or s00");
+    }
     if criterion == Criterion::Work && style.weights.own_horizons {
         let why = "it counts the bonds across a plane of the lattice, which `peri_modify horizon own` does not go by";
         return refuse("energy", why, "leave one of both out");

@@ -16,7 +16,7 @@ impl Families {
             if particles.iter().any(|p| spared(*p)) || known.binary_search(&(body, ends)).is_ok() {
                 return;
             }
-            let bond = Candidate { ends, bond, stretch: 0.0, s00: f64::INFINITY, alpha: 0.0 };
+            let bond = Candidate { ends, bond, stretch: 1.0, s00: 1.0, alpha: 0.0 };
             broken.push(Broken { body, bond, square: square(view, particles) });
         };
         for (k, body) in self.lattices.iter().enumerate() {

@@ -24,6 +24,13 @@ impl Families {
         Some(State { stress, memory: own.memory_of(site), torn })
     }
 
+    /// Whether anything is remembered beside which bonds live.
+    pub fn remembers(&self) -> bool {
+        let lattices = self.lattices.iter().map(|body| &body.state);
+        let mut all = lattices.chain([&self.list.state]);
+        self.law.kind.memory() > 0 || all.any(|state| !state.continuum.memory.is_empty())
+    }
+
     /// The first particle whose material had no answer in the last evaluation, and why.
     pub fn fault(&self) -> Option<(u32, Failure)> {
         let lattices = self.lattices.iter().map(|body| (&body.state.continuum, &body.particle));

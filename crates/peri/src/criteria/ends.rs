@@ -1,7 +1,7 @@
 //! What the families at both ends of a bond bear along it, from their deformation gradients.
 
 use crate::families::{Criterion, Families, PeriView};
-use crate::kinematics::{Tensor, green_lagrange, neo_hooke, von_mises};
+use crate::kinematics::{Tensor, determinant, green_lagrange, neo_hooke, von_mises};
 use perigrain_base::math::vec3::{Vec3, sub};
 use perigrain_base::par;
 
@@ -20,7 +20,7 @@ impl Ends {
             for (i, own) in (start..).zip(all) {
                 let size = families.family_size.get(i).copied().unwrap_or(0);
                 if size > 0 && !families.torn(view, i, TORN) {
-                    *own = families.gradient(view, i).and_then(|f| families.borne(view.kind[i], &f));
+                    *own = families.gradient(view, i).and_then(|f| families.borne(i, view.kind[i], &f));
                 }
             }
         });
@@ -53,13 +53,17 @@ fn normal(t: &[f64; 6], n: Vec3) -> f64 {
 }
 
 impl Families {
-    /// What a family of a type bears under a deformation gradient, as the criterion has it.
-    fn borne(&self, kind: u16, f: &Tensor) -> Option<[f64; 6]> {
+    /// What a particle's family, of a type, bears under a deformation gradient, as the criterion has it.
+    fn borne(&self, i: usize, kind: u16, f: &Tensor) -> Option<[f64; 6]> {
         if let Criterion::Strain(_) = self.options.criterion {
             return Some(green_lagrange(f));
         }
         let own = self.law.of(kind);
-        let stress = neo_hooke(f, own.bulk, own.shear)?;
+        let stress = match self.law.kind.correspondence {
+            // That of its material, in the last evaluation.
+            true => self.state(i)?.stress.map(|tau| tau / determinant(f)),
+            false => neo_hooke(f, own.bulk, own.shear)?,
+        };
         match self.options.criterion {
             Criterion::Shear(_) => Some([von_mises(&stress), 0.0, 0.0, 0.0, 0.0, 0.0]),
             _ => Some(stress),

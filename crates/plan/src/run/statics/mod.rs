@@ -213,8 +213,7 @@ impl Balance<'_> {
         self.ledger.inner(self.w, &self.body);
         self.plan.run(self.w, &t, &[Stage::PostForce, Stage::EndOfStep])?;
         self.ledger.begin(self.w, &self.body);
-        self.ledger.remembers =
-            self.w.families.as_ref().is_some_and(|families| families.law.kind.memory() > 0);
+        self.ledger.remembers = self.w.families.as_ref().is_some_and(|families| families.remembers());
         self.plan.reset_meters(true);
         self.plan.run(self.w, &t, &[Stage::Output])
     }
