@@ -71,7 +71,8 @@ pub(super) const STATICS: Entry = (
             Bonds break at equilibria alone. `break one` finds the load of each load step at which the first bond is at its limit (to \
             1e-3 of it), breaks that one with those that are stretched as much, balances the body again at the same load, and so on until \
             none is beyond its limit. `batch F` breaks the share `F` of the others too, `all` breaks all, at the end of load steps: \
-            faster, and where a crack runs on under fixed loads its path depends on it.\n\n\
+            faster, and where a crack runs on under fixed loads its path depends on it. The load ratio of a bond is its stretch over its \
+            critical stretch, or what `peri_modify break` compares; a formula is evaluated at the end of load steps alone.\n\n\
             Under `control damage` a load step is a break: time moves to where the bond with the largest load ratio is at its limit, \
             forwards or back, and that bond breaks. So the load falls where the body would otherwise fly apart at a fixed load \
             (snap-back), and no energy is given up but the little that one bond leaves. `N` is the most breaks, `T`/`N` the first guess \
