@@ -132,8 +132,10 @@ impl Families {
             trailing: 0.0,
             late: 0.0,
             heat: 0.0,
+            warmed: 0.0,
             relaxing: None,
             counts_losses: false,
+            counts_warming: false,
             breaking_share: None,
             four_lanes: false,
             almost: vec![],
@@ -368,7 +370,12 @@ impl Families {
     ) {
         let form = self.form();
         let Self { list, options, law, table, breaking_enabled, counts_losses, .. } = self;
-        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
+        let mode = Mode {
+            advance,
+            breaking_enabled: *breaking_enabled,
+            skip: options.skip_rest && !list.scatter.heated(),
+            form,
+        };
         let settling = law.settling(table, options, (advance, tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {
             // Read from a restart file.

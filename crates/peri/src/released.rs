@@ -101,6 +101,22 @@ impl Families {
         }
     }
 
+    /// Changes thermal strains from `old` to `new`, columns by particle, and books half of what that adds to the energy of all bonds at the
+    /// places of the last evaluation. Once before particles move and once behind that is the trapezoidal rule for
+    /// ∫ ∂U/∂T dT: heat that becomes elastic energy.
+    pub fn book_warming(&mut self, view: &PeriView, old: &[f64], new: &[f64]) {
+        let cell = self.cell(view);
+        let [before, after] = [old, new].map(|strain| {
+            self.warm(strain);
+            self.living_energy(view, &cell)
+        });
+        let half = 0.5 * (after - before);
+        self.warmed += half;
+        if self.counts_losses {
+            self.heat -= half;
+        }
+    }
+
     /// Adds the heat of a step at whose end the power is this.
     fn relax(&mut self, power: f64) {
         self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
@@ -165,7 +181,7 @@ impl Families {
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
     fn living_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
-        if !self.law.kind.bond_based {
+        if !self.law.kind.bond_based || self.heated() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices(view, &mut aside, (false, true), None);
             self.sweep_list(view, &mut aside, (false, true), (cell, None));

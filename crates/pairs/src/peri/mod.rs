@@ -16,6 +16,7 @@ mod pulled;
 mod reunion;
 mod scatter;
 mod softening;
+mod thermal;
 mod ves;
 
 use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
@@ -44,6 +45,7 @@ pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
 use scatter::Scatter;
 pub use softening::PeriPmbSoftening;
+use thermal::Thermal;
 pub use ves::PeriVes;
 
 /// A peridynamic style with its coefficients.
@@ -342,8 +344,9 @@ impl Pair for Solid {
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
+        let thermal = Thermal::of(self, &options, w, span)?;
         let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
-        if unlike {
+        if unlike || thermal.is_some() {
             style.law.shape_bonds();
         }
         style.law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(span))?;
@@ -351,7 +354,7 @@ impl Pair for Solid {
             &format!("neighbour list of {}", self.name),
             "bonds never change partners; close pairs are found by their stretch",
         );
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, scatter)))])
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, (scatter, thermal))))])
     }
 
     fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
@@ -446,7 +449,8 @@ impl Pair for Solid {
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
         // Such a probe has one number for a pair of types.
-        let alike = !self.law.surface && self.law.influence == Influence::One && !self.weights.any();
+        let even = !self.law.surface && !self.expands();
+        let alike = even && self.law.influence == Influence::One && !self.weights.any();
         let plain = self.law.kind.plain() && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }

@@ -129,6 +129,9 @@ pub fn statics(
             watch.scene(balance.w);
         }
     }
+    if let Some(families) = &mut *w.families {
+        families.counts_warming = false;
+    }
     let steps = w.clock.step - first;
     w.clock.stop = w.clock.last;
     all.seconds = clock.elapsed().as_secs_f64();
@@ -144,6 +147,9 @@ fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
     if w.families.as_ref().is_some_and(|families| !families.breaking_enabled) {
         // Limits that rise under compression count from the stretches of the evaluation before.
         plan.run(w, &tick(w, false), &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    }
+    if let Some(families) = &mut *w.families {
+        families.counts_warming = true;
     }
     Ok(())
 }
