@@ -35,6 +35,8 @@ pub struct Sealer<'a> {
     uses: usize,
     /// The log of the run.
     pub log: Log,
+    /// Steps are load steps of `statics`.
+    pub at_rest: bool,
     /// Declarations as formulas see them.
     declared: Option<Arc<Declared>>,
     /// The word outside computes and variables whose value is being planned.
@@ -60,6 +62,7 @@ impl<'a> Sealer<'a> {
             trail: vec![],
             uses: 0,
             log: Log::silent(),
+            at_rest: false,
             declared: None,
             word: Span::default(),
             tallies: None,

@@ -228,6 +228,7 @@ impl Session {
         self.world.facts.remove(*PLASTIC_GRAIN);
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
+        s.at_rest = pass == Pass::Statics;
         s.plan.levels = respa.as_ref().map(|r| r.loops.len() + 1);
         let respa = respa.unwrap_or_default();
         s.at(span);

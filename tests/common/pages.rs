@@ -73,6 +73,10 @@ fn subject(line: &str) -> Option<Vec<&str>> {
     }
 }
 
+/// A plate that conducts heat.
+const CONDUCTING: &str = "material glass E 72e9 nu 0.25 rho 2440 conductivity 1 heat_capacity 800
+pair_coeff * * material glass horizon 3.0001";
+
 /// Pages whose examples need other lines in the scene: title, how the scene's line begins, what stands in its place.
 const CHANGED: &[(&str, &str, &str)] = &[
     // Only an atom style without masses of its own takes them by type.
@@ -94,6 +98,10 @@ const CHANGED: &[(&str, &str, &str)] = &[
     ),
     ("fix enforce2d", "create_atoms 2", "create_atoms 2 single 0 0.005 0 units box"),
     ("fix enforce2d", "velocity", "velocity ball set 0 -1 0 units box"),
+    // Heat needs a material.
+    ("fix heat/held", "pair_coeff", CONDUCTING),
+    ("fix heat/flux", "pair_coeff", CONDUCTING),
+    ("fix heat/convect", "pair_coeff", CONDUCTING),
     // One integrator per particle: the fix moves these itself.
     ("fix move", "fix motion", "group rest subtract all top\nfix motion rest nve"),
 ];

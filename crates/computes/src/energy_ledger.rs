@@ -31,7 +31,7 @@ impl Style for EnergyLedger {
                    by peridynamic bonds that broke, with what their last forces take in the half step after.\n\n\
                    Then 8 work of walls on particles, of granular ones by how they move (walls that stand do none), 9 of gravity, 10 of all else that a \
                    deck imposes (other fixes, driven particles), 11 the residual, 12 … the strain of the bonds of each type, and last \
-                   the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic). \
+                   the heat of bonds that relax or flow (peri/ves, peri/eps, peri/pmb/plastic), less what thermal strain adds to the energy of bonds. \
                    Scalar: the residual.\n\n\
                    residual = 1 + 2 + 3 + 4 + 5 + 6 + 7 + last − 8 − 9 − 10 less its value when the first run with a ledger began: 0 if energy is kept. \
                    What a deck changes between runs does not count, so that one run and two leave the same. \

@@ -83,8 +83,8 @@ impl Style for CauchyAtom {
             text: "Per-atom array of 8 columns: σ_xx yy zz xy xz yz and von Mises' equivalent stress in pressure units, and \
                    J = det F. σ = (G/J)(FFᵀ − 1) + (λ/2J)(J² − 1)1 with F as that of compute peri/defgrad/atom and K, G, \
                    λ = K − 2G/3 of Young's modulus `E` and Poisson's ratio `nu`, or of a `material` (Hartmann et al. 2023, equations \
-                   28 to 30). With `pair` it is the stress of the material under `pair_style peri/cauchy`, of the latest force \
-                   evaluation.\n\n\
+                   28 to 30). Where temperatures strain the solid, F is divided by 1 + α_T (T − T0), but for J. With `pair` it is the \
+                   stress of the material under `pair_style peri/cauchy`, of the latest force evaluation.\n\n\
                    That of `neohooke` is a picture of the strain in terms of stress: forces come from the pair style, which knows nothing \
                    of it; compute stress/atom has what bonds bear, torn families included. 0 where there is no F, and but for J where J is not \
                    positive; NaN (or 0) in torn families: `torn` and `damage` as of compute peri/defgrad/atom.",
@@ -266,8 +266,9 @@ impl Measure {
         }
     }
 
-    /// Fills a row of zeros; `own` is what the pair style has of the particle.
-    fn put(self, f: &Tensor, own: impl FnOnce() -> Option<State>, row: &mut [f64]) {
+    /// Fills a row of zeros; stress is that of F over 1 + ε, with the thermal strain ε. `own` is what the pair style has of the
+    /// particle.
+    fn put(self, f: &Tensor, thermal: f64, own: impl FnOnce() -> Option<State>, row: &mut [f64]) {
         match self {
             Self::Gradient => {
                 row[..9].copy_from_slice(f.as_flattened());
@@ -276,7 +277,11 @@ impl Measure {
             Self::Strain => row.copy_from_slice(&green_lagrange(f)),
             Self::Stress { bulk, shear } => {
                 row[7] = determinant(f);
-                if let Some(stress) = neo_hooke(f, bulk, shear) {
+                let elastic = match thermal == 0.0 {
+                    true => *f,
+                    false => f.map(|row| row.map(|a| a / (1.0 + thermal))),
+                };
+                if let Some(stress) = neo_hooke(&elastic, bulk, shear) {
                     row[..6].copy_from_slice(&stress);
                     row[6] = von_mises(&stress);
                 }
@@ -329,7 +334,8 @@ impl Compute for Declared {
                     if families.torn(&view, start + k, torn.most) {
                         row.fill(torn.value);
                     } else if let Some(f) = families.gradient(&view, start + k) {
-                        measure.put(&f, || families.state(start + k), row);
+                        let thermal = families.thermal_strain(start + k);
+                        measure.put(&f, thermal, || families.state(start + k), row);
                     }
                 }
             });

@@ -1,6 +1,6 @@
 //! fix property/atom: user-named per-particle properties.
 
-use super::{Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::{Args, Word};
 use perigrain_plan::Op;
@@ -217,6 +217,10 @@ impl Fix for Declared {
         }
         w.properties.retain(|p| p.fix != self.0.fix);
         self.columns().for_each(|column| w.columns.remove(column));
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts { at_rest: AtRest::Acts, ..Facts::default() }
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {

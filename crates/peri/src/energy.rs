@@ -40,7 +40,7 @@ pub fn tally(
         let body = &families.lattices[k];
         for (cell, &p) in body.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
             let p = p as usize;
-            own(families, view, p, (&body.state, PAD + cell), scale(p), t);
+            own(families, view, p, (&body.state, PAD + cell, body.scatter.strain(cell)), scale(p), t);
         }
         let one = |slot: usize, t: &mut PeriTally| one_by_one(families, view, (body, slot), (advanced, t));
         let share = shares.map(|shares| &shares.bodies[k]);
@@ -65,7 +65,8 @@ pub fn tally(
     families.scratch.rows = rows;
     let list = &families.list;
     for (record, &p) in list.particle.iter().enumerate().filter(|(_, p)| dilated && **p != u32::MAX) {
-        own(families, view, p as usize, (&list.state, record), scale(p as usize), t);
+        let at = (&list.state, record, list.scatter.strain(record));
+        own(families, view, p as usize, at, scale(p as usize), t);
     }
     list::energy::tally(families, t, (advanced, cell, shares));
 }
@@ -182,11 +183,12 @@ fn own(
     families: &Families,
     view: &PeriView,
     p: usize,
-    (state, at): (&SiteState, usize),
+    (state, at, strain): (&SiteState, usize, f64),
     scale: f64,
     t: &mut PeriTally,
 ) {
-    let (moduli, theta) = (families.law.of(view.kind[p]), state.theta[at]);
+    // The dilatation kept has thermal strain in it.
+    let (moduli, theta) = (families.law.of(view.kind[p]), state.theta[at] - 3.0 * strain);
     let free = state.freed.of(at, state.weighted[at], (3.0 * moduli.bulk, 15.0 * moduli.shear));
     let density = 0.5 * moduli.bulk * theta * theta + free.map_or(0.0, |free| free.energy(theta));
     let energy = density * scale;

@@ -4,6 +4,7 @@ use perigrain_base::math::periods::Periods;
 
 use crate::contact::{Repulsion, push_apart, repel};
 use crate::energy::tally;
+use crate::families::lattice::RowMotion;
 use crate::families::shares::Shares;
 use crate::families::{
     AlmostLattice, Bounds, Cell, Criterion, Edges, Families, FamilyOptions, Law, Layout, NearPairs,
@@ -137,8 +138,10 @@ impl Families {
             late: 0.0,
             heat: 0.0,
             lost: [0.0; 2],
+            warmed: 0.0,
             relaxing: None,
             counts_losses: false,
+            counts_warming: false,
             breaking_share: None,
             implicit: false,
             ratios: vec![],
@@ -305,7 +308,6 @@ impl Families {
     /// The first half of [`Families::force`]: what has moved, and by how much. `shared` says that work is shared out to ranks, where it can be
     /// ([`Families::is_shared`]) and nothing is added up by particle; elsewhere everything has to be up to date.
     pub fn begin(&mut self, view: &PeriView, advance: bool, shared: bool) -> Begun {
-        let form = self.form();
         self.particles_joined(view);
         let shares = self.shares.take_if(|_| shared);
         self.late = 0.0;
@@ -316,21 +318,32 @@ impl Families {
             // Images have come nearer to each other.
             self.forget_near();
         }
+        let moved = self.gather(view, shares.as_ref());
+        let repels = !self.options.no_repulsion;
+        let changes = repels.then(|| self.ranges(view, &moved, (advance, shares.as_ref())));
+        let searches = changes.is_some_and(|changes| self.searches(changes));
+        Begun { advance, shares, changes, searches }
+    }
+
+    /// Puts all bonds at the places of `view`; those of an evaluation that has begun have to come last.
+    pub fn put(&mut self, view: &PeriView) {
+        self.gather(view, None);
+    }
+
+    /// Takes the places of particles to their bonds.
+    fn gather(&mut self, view: &PeriView, shares: Option<&Shares>) -> RowMotion {
+        let form = self.form();
         let reference = self.reference.as_deref().unwrap_or(view.x0);
         // Bonded particles that were put close to each other before families were built push each other from the start.
         let repels = !self.options.no_repulsion;
         for (k, body) in self.lattices.iter_mut().enumerate() {
             let short_range = repels && body.contact >= 0.0;
-            let follows = shares.as_ref().map(|shares| &shares.bodies[k].follows[..]);
+            let follows = shares.map(|shares| &shares.bodies[k].follows[..]);
             // SAFETY: the processor has what the form needs.
             unsafe { gather(form, body, view, reference, short_range, follows) };
         }
         let short_range = repels && self.list.contact >= 0.0;
-        let share = shares.as_ref().and_then(|shares| shares.list.as_ref());
-        let moved = list::gather(&mut self.list, view, short_range, share);
-        let changes = repels.then(|| self.ranges(view, &moved, (advance, shares.as_ref())));
-        let searches = changes.is_some_and(|changes| self.searches(changes));
-        Begun { advance, shares, changes, searches }
+        list::gather(&mut self.list, view, short_range, shares.and_then(|shares| shares.list.as_ref()))
     }
 
     /// The second half. Where it searches for pairs the places of all particles have to be known.
@@ -388,7 +401,12 @@ impl Families {
     ) {
         let form = self.form();
         let Self { list, options, law, table, breaking_enabled, counts_losses, implicit, .. } = self;
-        let mode = Mode { advance, breaking_enabled: *breaking_enabled, skip: options.skip_rest, form };
+        let mode = Mode {
+            advance,
+            breaking_enabled: *breaking_enabled,
+            skip: options.skip_rest && !list.scatter.heated(),
+            form,
+        };
         let settling =
             law.settling(table, options, (advance || *implicit, advance), (tallied, *counts_losses));
         if list.inverse.len() != list.partner.len() {

@@ -6,7 +6,7 @@ use crate::families::{Cell, Criterion, Families, FamilyOptions, PeriView};
 use perigrain_base::par;
 use std::ops::Range;
 
-/// A living bond: the site at its other end, its stretch, s00 and alpha.
+/// A living bond: the site at its other end, its stretch less thermal strain, s00 and alpha.
 type Pulled = (usize, f64, f64, f64);
 
 impl Families {
@@ -32,7 +32,8 @@ impl Families {
                     }
                     let length = body.xi(e).iter().map(|x| x * x).sum::<f64>().sqrt();
                     let [_, s00, alpha] = body.pair(site, to);
-                    each((to, banded(body.z(1, site, to, e), length, options), s00, alpha));
+                    let stretch = banded(body.z(1, site, to, e), length, options);
+                    each((to, stretch - body.scatter.strain_between([site, to]), s00, alpha));
                 }
             };
             let breaks = |site: usize| body.particle[site] != u32::MAX && !lasts(body.particle[site]);
@@ -48,7 +49,8 @@ impl Families {
                 }
                 let (z, length) = list.z(false, site, to, &cell);
                 let s00 = pair.s00 * list.scatter.strength([site, to]);
-                each((to, banded(z, length, options), s00, pair.alpha));
+                let stretch = banded(z, length, options) - list.scatter.strain_between([site, to]);
+                each((to, stretch, s00, pair.alpha));
             }
         };
         let breaks = |site: usize| list.particle[site] != u32::MAX && !lasts(list.particle[site]);

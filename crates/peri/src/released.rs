@@ -115,6 +115,25 @@ impl Families {
         self.lost = self.states().fold([0.0; 2], |sum, state| state.continuum.lost.iter().fold(sum, add));
     }
 
+    /// Changes thermal strains from `old` to `new`, columns by particle: what that adds to the energy of all bonds at the places of the
+    /// last evaluation.
+    pub fn warming(&mut self, view: &PeriView, [old, new]: [&[f64]; 2]) -> f64 {
+        let cell = self.cell(view);
+        let [before, after] = [old, new].map(|strain| {
+            self.warm(strain);
+            self.living_energy(view, &cell)
+        });
+        after - before
+    }
+
+    /// Books a part of ∫ ∂U/∂T dT: heat that has become elastic energy.
+    pub fn book_warming(&mut self, energy: f64) {
+        self.warmed += energy;
+        if self.counts_losses {
+            self.heat -= energy;
+        }
+    }
+
     /// Adds the heat of a step at whose end the power is this.
     fn relax(&mut self, power: f64) {
         self.heat += 0.5 * self.law.dt * (self.relaxing.unwrap_or(power) + power);
@@ -185,7 +204,7 @@ impl Families {
 
     /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
     fn living_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
-        if !self.law.kind.bond_based {
+        if !self.law.kind.bond_based || self.heated() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
             self.sweep_lattices(view, &mut aside, (false, true), None);
             self.sweep_list(view, &mut aside, (false, true), (cell, None));

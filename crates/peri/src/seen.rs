@@ -58,13 +58,44 @@ impl Families {
         self.list.scatter.set_strengths(&self.list.particle, strength);
     }
 
+    /// Gives particles thermal strains, in a column that is empty where there are none. The law has to be linear in a bond's stretch, with
+    /// columns of its ends: forces, energies and limits of bonds are then those of the stretch without them.
+    pub fn warm(&mut self, strain: &[f64]) {
+        debug_assert!(strain.is_empty() || self.law.kind.strains_thermally());
+        let Self { lattices, list, .. } = self;
+        let bodies = lattices.iter_mut().map(|body| (&mut body.scatter, &body.particle, &mut body.state));
+        for (scatter, particle, state) in bodies.chain([(&mut list.scatter, &list.particle, &mut list.state)])
+        {
+            if strain.is_empty() && scatter.heated() {
+                // Bond-based laws have no dilatations but these.
+                state.theta.fill(0.0);
+            }
+            scatter.warm(particle, strain);
+        }
+    }
+
+    /// Whether particles have thermal strains.
+    pub fn heated(&self) -> bool {
+        self.list.scatter.heated() || self.lattices.iter().any(|body| body.scatter.heated())
+    }
+
+    /// The thermal strain of a particle.
+    pub fn thermal_strain(&self, i: usize) -> f64 {
+        self.scatter_of(i).map_or(0.0, |(scatter, site)| scatter.strain(site))
+    }
+
     /// The factor on how stiff the bonds of a particle are.
     pub(crate) fn stiffness_of(&self, i: usize) -> f64 {
-        let Some(place) = self.place.get(i).copied().filter(|place| *place != u32::MAX) else { return 1.0 };
+        self.scatter_of(i).map_or(1.0, |(scatter, site)| scatter.stiffness(site))
+    }
+
+    /// The factors of a particle's body, and where its own are.
+    fn scatter_of(&self, i: usize) -> Option<(&Scatter, usize)> {
+        let place = self.place.get(i).copied().filter(|place| *place != u32::MAX)?;
         let body = self.lattices.partition_point(|b| b.first_place + b.particle.len() as u32 <= place);
-        match self.lattices.get(body) {
-            Some(body) => body.scatter.stiffness((place - body.first_place) as usize),
-            None => self.list.scatter.stiffness((place - self.list.first_place) as usize),
-        }
+        Some(match self.lattices.get(body) {
+            Some(body) => (&body.scatter, (place - body.first_place) as usize),
+            None => (&self.list.scatter, (place - self.list.first_place) as usize),
+        })
     }
 }

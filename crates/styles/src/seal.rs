@@ -189,6 +189,10 @@ pub trait SealCx {
     fn level(&self) -> Level {
         Level::Outermost
     }
+    /// Whether steps are load steps of `statics`, from one equilibrium to the next.
+    fn at_rest(&self) -> bool {
+        false
+    }
     /// The slot `f_ID`, `c_ID` … of this name.
     fn slot(&mut self, name: &str) -> SlotId;
     /// A reference's value, fresh whenever `when` fires, before the ops of this style at `stage`.

@@ -22,6 +22,10 @@ impl SealCx for Sealer<'_> {
         self.span
     }
 
+    fn at_rest(&self) -> bool {
+        self.at_rest
+    }
+
     fn level(&self) -> Level {
         self.chosen.map_or(Level::Outermost, Level::At)
     }

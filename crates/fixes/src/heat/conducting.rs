@@ -202,6 +202,7 @@ impl Conducting {
             return Err(self.refusal("no particle of the group has peridynamic bonds").into());
         }
         let edges = edges(w, &scene);
+        self.whole(w, &edges)?;
         self.apart(w, &edges)?;
         edges.iter().for_each(|(_, edge)| scene.add(edge));
         let conduction = Conduction::new(families, self.line.cracks);
@@ -259,6 +260,22 @@ impl Conducting {
         Ok(())
     }
 
+    /// Refuses edges with particles of the group that have no bonds to conduct over: they would share the area.
+    fn whole(&self, w: &World, edges: &[(Key<Boundary>, Edge)]) -> Result<()> {
+        let bit = self.line.group.bit();
+        for (id, edge) in edges {
+            let both =
+                w.particles.mask.iter().filter(|mask| **mask & bit != 0 && **mask & edge.boundary.bit != 0);
+            let idle = both.count() - edge.members.len();
+            if idle > 0 {
+                let text =
+                    format!("{idle} particles of fix {id} have no peridynamic bonds to conduct heat over");
+                return Err(conflict(self.span, &text));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses particles of a given temperature that something else heats or holds as well.
     fn apart(&self, w: &World, edges: &[(Key<Boundary>, Edge)]) -> Result<()> {
         let mut by: Vec<Option<usize>> = vec![None; w.n()];
@@ -288,7 +305,7 @@ fn edges(w: &World, scene: &Scene) -> Vec<(Key<Boundary>, Edge)> {
 
 fn conflict(span: Span, text: &str) -> Diagnostics {
     let d = Diagnostic::error(Code::CONFLICT, span, text);
-    d.help("give the two fixes groups that share no particle").into()
+    d.help("give that fix, or both, a smaller group").into()
 }
 
 /// Explicit steps of equal length, none longer than the safe part of the stable one.

@@ -21,7 +21,7 @@ impl Style for Convect {
             text: "Acts together with `fix heat/peri`, when that acts. Each of the N particles of the group gets H (TINF − T) A/N: the \
                    group is the layer below the surface, A the area of that surface.\n\n\
                    Scalar (extensive): the heat that the fluid has given since the fix was declared, negative where it took some.",
-            example: "fix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
+            example: "group base intersect plate foot\nfix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
                       fix air base heat/convect 25.0 293.0 area 4.0e-6",
         }
     }

@@ -21,7 +21,7 @@ impl Style for Flux {
             text: "Acts together with `fix heat/peri`, when that acts. Each particle of the group gets Q A divided by the number of its \
                    particles: the group is the layer below the surface, A the area of that surface.\n\n\
                    Scalar (extensive): the heat that has come since the fix was declared.",
-            example: "fix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
+            example: "group base intersect plate foot\nfix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
                       fix sun base heat/flux 1.0e3 area 4.0e-6",
         }
     }

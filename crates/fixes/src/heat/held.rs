@@ -22,7 +22,7 @@ impl Style for HeldAt {
                    temperature is V from the first step on. Bonds join the middles of particles: the temperature is given there, half a \
                    spacing below the surface.\n\n\
                    Scalar (extensive): the heat that the particles have been given since the fix was declared, negative where it was taken.",
-            example: "fix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
+            example: "group base intersect plate foot\nfix prop all property/atom temperature heatflow\nfix warm plate heat/peri\n\
                       variable rise equal 20.0+time\nfix hot base heat/held v_rise",
         }
     }

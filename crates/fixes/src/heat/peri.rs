@@ -37,7 +37,9 @@ impl Style for HeatPeri {
                    Scalar (extensive): the heat of all particles, Σ ρ c V T. Vector of 6: heat that has come from held particles, fluxes, \
                    fluids and `heatflow` since the fix was declared (extensive), steps from one action to the next, products of the last \
                    linear system.",
-            example: "fix prop all property/atom temperature heatflow\nfix warm plate heat/peri",
+            example: "material glass E 72e9 nu 0.25 rho 2440 conductivity 1 heat_capacity 800\n\
+                      pair_coeff * * material glass horizon 3.0001\n\
+                      fix prop all property/atom temperature heatflow\nfix warm plate heat/peri",
         }
     }
 }
@@ -163,7 +165,12 @@ impl Fix for Declared {
             .keep(COLUMNS | MEMO)
             .write(SLOTS | FACTS)
             .only(&names);
-        let mut conducting = Conducting::new(self.clone(), keys, [temperature, flow], (slot, span));
+        let mut line = self.clone();
+        if cx.at_rest() {
+            // The temperatures of an equilibrium are those of its load.
+            line.every = Some(1);
+        }
+        let mut conducting = Conducting::new(line, keys, [temperature, flow], (slot, span));
         let name = format!("fix {} heat/peri", self.id);
         let op = StepOp::new(name, Stage::PostIntegrate, needs, move |w, t| conducting.act(w, t));
         Ok(vec![op.in_setup(true).boxed()])

@@ -66,14 +66,10 @@ pub fn allowed(style: &Solid, span: Span) -> Result<()> {
         let why = "it counts the bonds across a plane of the lattice, which `peri_modify horizon own` does not go by";
         return refuse("energy", why, "leave one of both out");
     }
-    if criterion == Criterion::Work && law.correspondence {
-        let why = "forces of correspondence belong to its sites, not to single bonds";
-        return refuse("energy", why, "use `break strain`, or leave `break` out");
-    }
-    if criterion.of_stress() && (law.memory() > 0 || law.correspondence) {
+    if criterion.of_stress() && law.memory() > 0 {
         let word = if let Criterion::Shear(_) = criterion { "shear" } else { "stress" };
-        let why = "the stress is that of an elastic solid, and its bonds flow, relax, soften or have that of their material";
-        return refuse(word, why, "use `break strain` or, without correspondence, `break energy`");
+        let why = "the stress is that of an elastic solid, and its bonds flow, relax or soften";
+        return refuse(word, why, "use `break strain` or `break energy`");
     }
     Ok(())
 }

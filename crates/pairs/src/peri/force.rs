@@ -1,6 +1,7 @@
 //! The op behind all peridynamic styles: families at the first run, forces at every step.
 
 use super::scatter::Scatter;
+use super::thermal::Thermal;
 use super::{Pair, Solid, bond_weights, breaking, pulled, reunion};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_constitutive::Failure;
@@ -24,6 +25,8 @@ pub struct Force {
     name: String,
     /// Bonds that differ from particle to particle.
     scatter: Scatter,
+    /// Thermal strains, where there are some.
+    thermal: Option<Thermal>,
     /// The coefficients of the deck's lines, before micro-moduli were calibrated.
     declared: PmbTable,
     /// Which changes by fixes have been seen.
@@ -42,7 +45,7 @@ impl Force {
         style: Solid,
         declared: PmbTable,
         options: FamilyOptions,
-        (scatter, formula): (Scatter, Option<BondFormula>),
+        (scatter, thermal, formula): (Scatter, Option<Thermal>, Option<BondFormula>),
     ) -> Self {
         let name = format!("pair {}", style.name);
         let key = |types, name: &str| {
@@ -53,13 +56,13 @@ impl Force {
         let pairs = (1..=types).flat_map(|i| (i..=types).map(move |j| (i, j)));
         let keys = pairs.map(|p| (p, ["c", "s00", "alpha"].map(|name| key(p, name)))).collect();
         let tally = Key::new(style.name);
-        Self { style, options, name, scatter, declared, adapted: 0.0, keys, tally, formula }
+        Self { style, options, name, scatter, thermal, declared, adapted: 0.0, keys, tally, formula }
     }
 }
 
 impl Op for Force {
     fn about(&self) -> About {
-        let factors = if self.scatter.any() { COLUMNS } else { Fields::NONE };
+        let factors = if self.scatter.any() || self.thermal.is_some() { COLUMNS } else { Fields::NONE };
         let formula = if self.formula.is_some() { FORMULAS } else { Fields::NONE };
         About {
             level: Level::At(0),
@@ -123,7 +126,13 @@ impl Op for Force {
             // On ranks: squeezed bonds are few, and each rank adds up all of them.
             w.whole(X);
         }
+        if let Some(thermal) = &mut self.thermal {
+            thermal.begin(&mut families, w)?;
+        }
         let begun = families.begin(&view(w)?, advance, w.is_narrow());
+        if let Some(thermal) = self.thermal.as_mut().filter(|_| advance) {
+            thermal.end(&mut families, w)?;
+        }
         let searches = begun.searches;
         if searches {
             // On ranks: those that come near may be anywhere.
@@ -161,7 +170,7 @@ impl Op for Force {
         let tallied = t.energy || t.virial;
         let shared = w.families.past().as_ref().is_some_and(|families| families.is_shared(!t.trial, tallied));
         let same = self.adapted == w.adaptations() && !t.atom_energy && !t.atom_virial;
-        if shared && same && !t.setup { Span::Near } else { Span::All }
+        if shared && same && !t.setup && self.thermal.is_none() { Span::Near } else { Span::All }
     }
 }
 

@@ -18,6 +18,7 @@ mod pulled;
 mod reunion;
 mod scatter;
 mod softening;
+mod thermal;
 mod ves;
 
 use super::{ByPart, Deck, Facts, Pair, PairOption, Scales, TypePairs};
@@ -48,6 +49,7 @@ pub use plastic::PeriPmbPlastic;
 pub use pmb::PeriPmb;
 use scatter::Scatter;
 pub use softening::PeriPmbSoftening;
+use thermal::Thermal;
 pub use ves::PeriVes;
 
 /// A peridynamic style with its coefficients.
@@ -366,8 +368,9 @@ impl Pair for Solid {
         let scatter = Scatter::of(self, &options, w).map_err(|e| e.at(span))?;
         let mut style = self.clone();
         style.table = self.calibrated(a, span)?;
+        let thermal = Thermal::of(self, &options, w, span)?;
         let unlike = self.law.surface || self.law.influence != Influence::One || scatter.stiffness;
-        if unlike {
+        if unlike || thermal.is_some() {
             style.law.shape_bonds();
         }
         style.law.shared_or_apart(w.families.as_ref().map(|f| &f.law)).map_err(|e| e.at(span))?;
@@ -382,7 +385,7 @@ impl Pair for Solid {
             Some(r) => Some(cx.bond_formula(r, Stage::PreForce, &when)?),
             None => None,
         };
-        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, (scatter, formula))))])
+        Ok(vec![(0, Box::new(Force::new(style, self.table.clone(), options, (scatter, thermal, formula))))])
     }
 
     fn modify(&mut self, option: PairOption, cx: &BuildCx) -> Result<()> {
@@ -484,7 +487,8 @@ impl Pair for Solid {
 
     fn probes(&self, _w: &World, bonds: bool) -> Result<ByPart<dyn Probe>> {
         // Such a probe has one number for a pair of types.
-        let alike = !self.law.surface && self.law.influence == Influence::One && !self.weights.any();
+        let even = !self.law.surface && !self.expands();
+        let alike = even && self.law.influence == Influence::One && !self.weights.any();
         let plain = self.law.kind.plain() && !self.compress && alike;
         Ok(if bonds && plain { vec![(0, Box::new(BondProbe))] } else { vec![] })
     }

@@ -59,11 +59,11 @@ impl Families {
         let mut tired = Tired { cycles: most, ..Tired::default() };
         self.each_living(|body, sites, bond, ends| {
             let [i, j] = sites;
-            let (z, life) = match self.lattices.get(body) {
-                Some(own) => (own.z(0, i, j, bond), own.life.get(own.place_of(i, bond))),
-                None => (self.list.z(true, i, j, &cell).0, self.list.life.get(bond)),
+            let (z, life, scatter) = match self.lattices.get(body) {
+                Some(own) => (own.z(0, i, j, bond), own.life.get(own.place_of(i, bond)), &own.scatter),
+                None => (self.list.z(true, i, j, &cell).0, self.list.life.get(bond), &self.list.scatter),
             };
-            let s = stretch(z);
+            let s = stretch(z) - scatter.strain_between(sites);
             let spared = ends.iter().any(|p| self.lasting.get(*p as usize).copied().unwrap_or(false));
             let tip = ends.iter().any(|p| near.get(*p as usize).copied().unwrap_or(false));
             let rate = if spared { 0.0 } else { rules.rate(s, tip) };

@@ -103,12 +103,18 @@ pub struct Families {
     /// What flow and damage of materials took in the last step that advanced: heat, and fracture energy [energy].
     #[serde(skip)]
     pub lost: [f64; 2],
+    /// What heat has added to the energy of bonds by thermal strain, as far as it was counted [energy].
+    #[serde(default)]
+    pub warmed: f64,
     /// The power at which bonds relaxed at the last step that was counted.
     #[serde(default)]
     pub relaxing: Option<f64>,
     /// Count both.
     #[serde(skip)]
     pub counts_losses: bool,
+    /// Count [`Families::warmed`].
+    #[serde(skip)]
+    pub counts_warming: bool,
     /// Of the bonds beyond their limit the one that is stretched most, over its critical stretch, breaks, with those stretched
     /// as much and this share of the others; `None`: all.
     #[serde(skip)]

@@ -61,8 +61,8 @@ impl LatticeBody {
         if !self.scatter.uneven() {
             return Cow::Borrowed(&self.pairs);
         }
-        let weakest = self.scatter.weakest();
-        Cow::Owned(self.pairs.iter().map(|&[c, s00, alpha]| [c, s00 * weakest, alpha]).collect())
+        let lowest = |s00| self.scatter.lowest(s00);
+        Cow::Owned(self.pairs.iter().map(|&[c, s00, alpha]| [c, lowest(s00), alpha]).collect())
     }
 
     /// Displacements of this step (1) or of the one before (0), at a cell.
@@ -234,8 +234,8 @@ impl LatticeBody {
         let s00 = c.s00 * self.scatter.strength([i, j]);
         let before = if c.alpha == 0.0 { 0.0 } else { stretch(self.z(0, i, j, c.bond as usize)).max(0.0) };
         // Rounding takes far less.
-        let limit = s00 - c.alpha * before;
-        (c.stretch > limit - 1e-12 * limit.abs()).then_some(Candidate { s00, ..c })
+        let (limit, stretch) = (s00 - c.alpha * before, c.stretch - self.scatter.strain_between([i, j]));
+        (stretch > limit - 1e-12 * limit.abs()).then_some(Candidate { s00, stretch, ..c })
     }
 
     /// The same for a chunk of a body with several types in a row, bond by bond.
@@ -247,7 +247,7 @@ impl LatticeBody {
                 let i = chunk * LANES + lane;
                 let Some(j) = self.ahead(slot, i, e) else { continue };
                 let [_, s00, alpha] = self.pair(i, j);
-                let now = stretch(self.z(1, i, j, e));
+                let now = stretch(self.z(1, i, j, e)) - self.scatter.strain_between([i, j]);
                 if now > s00 - alpha * stretch(self.z(0, i, j, e)).max(0.0) {
                     let ends = [i as u32, j as u32];
                     found.push(Candidate { ends, bond: e as u32, stretch: now, s00, alpha });

@@ -21,16 +21,15 @@ fn meet(body: &LatticeBody, slot: usize, step: (i32, usize)) -> (usize, Option<u
 
 /// An s00 that no bond of a row has less of, and the largest alpha.
 pub(crate) fn row_limit(body: &LatticeBody, slot: usize) -> (f64, f64) {
-    let weakest = body.scatter.weakest();
     if let [[_, s00, alpha]] = body.pairs[..] {
-        return (s00 * weakest, alpha.max(0.0));
+        return (body.scatter.lowest(s00), alpha.max(0.0));
     }
     let mut limit = (f64::INFINITY, 0.0f64);
     for &step in &body.steps {
         let pair = meet(body, slot, step).1;
         let known = pair.map_or(&body.pairs[..], |pair| &body.pairs[pair..=pair]);
         for [_, s00, alpha] in known {
-            limit = (limit.0.min(*s00 * weakest), limit.1.max(*alpha));
+            limit = (limit.0.min(body.scatter.lowest(*s00)), limit.1.max(*alpha));
         }
     }
     limit

@@ -21,9 +21,10 @@ use crate::families::shares::{BodyShare, Shares};
 use crate::families::tiles::Tiles;
 use crate::families::{Cell, Families, FamilyOptions, ForceUnit, Law, PeriView};
 use crate::lattice::sweep::{ChunkColumns, Mode, Sweep};
+use crate::law::kernels::Loops;
 use crate::law::moment::COLUMNS;
 use crate::law::moment::Moment;
-use crate::law::settle::{Settling, Sites, stiffen};
+use crate::law::settle::{Settling, Sites, stiffen, with_thermal_strain, without_thermal_strain};
 use crate::law::state::SiteState;
 use crate::law::style::{Losses, Style};
 use crate::law::terms::Sum;
@@ -106,6 +107,16 @@ pub fn hold(state: &mut SiteState, law: &Style, settling: &Settling) {
     }
 }
 
+/// From the sums of dilatations to what sites have, with their thermal strains where there are some.
+pub fn dilate(loops: &dyn Loops, settling: &Settling, state: &mut SiteState, sites: &Sites) {
+    if sites.strain.is_empty() {
+        return loops.dilatations(settling, state, sites);
+    }
+    without_thermal_strain(state, sites);
+    loops.dilatations(settling, state, sites);
+    with_thermal_strain(state, sites);
+}
+
 /// The sweeps over one body on a lattice.
 fn lattice_body(
     body: &mut LatticeBody,
@@ -146,9 +157,18 @@ fn lattice_body(
     let count = particle.len();
     let only = if let [only] = body.kinds[..] { Some(only) } else { None };
     let stiffness = std::mem::take(&mut body.scatter.stiffness);
+    let strain = body.scatter.strains().to_vec();
     let (stride, kinds) = (body.stride, view.kind);
-    let sites =
-        Sites { count, pad: PAD, stride, particle: &particle, kind: kinds, only, stiffness: &stiffness };
+    let sites = Sites {
+        count,
+        pad: PAD,
+        stride,
+        particle: &particle,
+        kind: kinds,
+        only,
+        stiffness: &stiffness,
+        strain: &strain,
+    };
     if law.correspondence {
         let mut sums = std::mem::take(&mut body.state.sums);
         sums.clear();
@@ -177,7 +197,7 @@ fn lattice_body(
     };
     if !law.bond_based && !law.correspondence {
         add_up(body, Sum::Dilatation, states, share.as_deref_mut());
-        loops.dilatations(settling, &mut body.state, &sites);
+        dilate(loops, settling, &mut body.state, &sites);
     }
     if law.stiffened {
         stiffen(settling, &mut body.state, &sites);

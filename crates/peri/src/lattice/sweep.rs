@@ -188,7 +188,10 @@ impl<'a> Sweep<'a> {
             Some(motion) if !spread => (motion.lo, motion.hi),
             _ => self.reached(slot),
         };
-        let active = (at.0.saturating_sub(body.reach[0]), at.1.saturating_add(body.reach[0]));
+        let active = match body.scatter.heated() {
+            true => EVERYWHERE,
+            false => (at.0.saturating_sub(body.reach[0]), at.1.saturating_add(body.reach[0])),
+        };
         RowPlan { active, growth: *growth, limit: row_limit(body, slot) }
     }
 

@@ -44,6 +44,8 @@ pub struct Sites<'a> {
     pub only: Option<u16>,
     /// Factors on how stiff they are; empty where all are 1.
     pub stiffness: &'a [f64],
+    /// Thermal strains; empty where there are none.
+    pub strain: &'a [f64],
 }
 
 impl Sites<'_> {
@@ -203,9 +205,39 @@ fn linear(own: &Stiffness, state: &mut SiteState, sites: &Sites) {
     });
 }
 
+/// Before dilatations are settled: takes the thermal strain ε from their sums, Σ ω w |xi| (e − ε |xi|) V over living bonds.
+pub fn without_thermal_strain(state: &mut SiteState, sites: &Sites) {
+    let SiteState { weighted, freed, sums, .. } = state;
+    let lost = |at: usize| freed.gone.get(at).copied().unwrap_or(0.0);
+    par::each((sites.own(sums), sites.strain), |start, (sums, strain): (&mut [f64], &[f64])| {
+        for (k, (sum, strain)) in sums.iter_mut().zip(strain).enumerate() {
+            let at = sites.pad + start + k;
+            *sum -= strain * (weighted[at] - lost(at)).max(0.0);
+        }
+    });
+}
+
+/// Behind that: each end's force is that of the stretch less ε, A − B ε + B s. The dilatation kept is θ + 3ε, so that
+/// s − θ/3 in energies is the deviatoric stretch without ε.
+pub fn with_thermal_strain(state: &mut SiteState, sites: &Sites) {
+    let SiteState { theta, columns, .. } = state;
+    let (first, second, ..) = sites.columns(columns);
+    let second: &[f64] = second;
+    let columns = (sites.own(theta), first, second, sites.strain);
+    par::each(columns, |_, (theta, first, second, strain): (&mut [f64], &mut [f64], &[f64], &[f64])| {
+        for k in 0..strain.len() {
+            first[k] -= second[k] * strain[k];
+            theta[k] += 3.0 * strain[k];
+        }
+    });
+}
+
 /// How stiff each site's half of its microelastic bonds is: ½, or with surfaces corrected ½ πδ⁴/Σ c w |xi| V/c; times its
 /// factor.
 pub fn stiffen(settling: &Settling, state: &mut SiteState, sites: &Sites) {
+    if !sites.strain.is_empty() {
+        sites.own(&mut state.theta).fill(0.0);
+    }
     let weighted = &state.weighted;
     par::each(sites.columns(&mut state.columns), |start, mut columns| {
         for k in 0..columns.0.len() {
@@ -221,4 +253,7 @@ pub fn stiffen(settling: &Settling, state: &mut SiteState, sites: &Sites) {
             put(&mut columns, k, &[0.0, share, 0.0, 0.0, 0.0, 0.0], 2);
         }
     });
+    if !sites.strain.is_empty() {
+        with_thermal_strain(state, sites);
+    }
 }

@@ -186,6 +186,13 @@ impl Style {
         self.curve.is_some()
     }
 
+    /// Whether it is linear in a bond's stretch with columns A and B of both ends, which take up thermal strains.
+    pub fn strains_thermally(&self) -> bool {
+        (self.stiffened || !self.bond_based)
+            && self.losses == Losses::None
+            && self.own.loops().about().memory == 0
+    }
+
     /// Whether sites have a yield surface.
     pub fn yields(&self) -> bool {
         self.own.loops().about().norm.is_some()

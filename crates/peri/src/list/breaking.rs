@@ -61,7 +61,7 @@ impl Judge {
 
     /// The stretch at which the bond between two records breaks.
     fn limit(&self, body: &ListBody, pair: &PairConstants, ends: [usize; 2]) -> f64 {
-        let s00 = pair.s00 * body.scatter.strength(ends);
+        let s00 = body.scatter.limit(pair.s00, ends);
         let measure = |i: usize| body.limits.least.get(i).copied().unwrap_or(f64::INFINITY);
         let most = f64::max(measure(ends[0]), measure(ends[1]));
         match self.critical {
@@ -117,7 +117,7 @@ impl Judge {
         let least = &body.limits.least;
         let alone = pair.alpha == 0.0 && !self.critical;
         let most = if alone { 0.0 } else { f64::max(least[ends[0]], least[ends[1]]) };
-        let s00 = pair.s00 * body.scatter.strength(ends);
+        let s00 = body.scatter.limit(pair.s00, ends);
         let limit = if self.critical { -most } else { s00 - 0.5 * pair.alpha * most };
         0.5 * z < limit - 1e-12 * limit.abs()
     }
@@ -179,11 +179,10 @@ impl InLanes for Weak<'_, '_> {
 
 /// The z below which no bond breaks where no family's least z is larger than `most`: limits are the lower the larger that is.
 fn floor(body: &ListBody, most: f64) -> f64 {
-    let weakest = body.scatter.weakest();
     let limit = |p: &PairConstants| match p.alpha {
-        0.0 => p.s00 * weakest,
+        0.0 => body.scatter.lowest(p.s00),
         _ if most == f64::INFINITY => f64::NEG_INFINITY,
-        alpha => p.s00 * weakest - alpha * stretch(most.max(-1.0)),
+        alpha => body.scatter.lowest(p.s00) - alpha * stretch(most.max(-1.0)),
     };
     lowered(body.pairs.iter().map(limit).fold(f64::INFINITY, f64::min))
 }
@@ -229,9 +228,10 @@ pub fn candidates(
         let (b, pair) = (bond as usize, *body.constants(bond as usize));
         let ends = [body.owner[b / GROUP], body.partner[b]];
         if stretch(z) > judge.limit(body, &pair, ends.map(|r| r as usize)) {
-            let alpha = pair.alpha;
-            let s00 = pair.s00 * body.scatter.strength(ends.map(|r| r as usize));
-            found.push(Candidate { ends, bond, stretch: stretch(z), s00, alpha });
+            let (alpha, at) = (pair.alpha, ends.map(|r| r as usize));
+            let s00 = pair.s00 * body.scatter.strength(at);
+            let stretch = stretch(z) - body.scatter.strain_between(at);
+            found.push(Candidate { ends, bond, stretch, s00, alpha });
         }
     }
 }
@@ -305,7 +305,7 @@ fn least(
 pub fn roll(body: &mut ListBody, agreed: Option<f64>) {
     let (s00, alpha) =
         body.pairs.iter().fold((f64::INFINITY, 0.0f64), |l, p| (l.0.min(p.s00), l.1.max(p.alpha)));
-    let s00 = s00 * body.scatter.weakest();
+    let s00 = body.scatter.lowest(s00);
     let limits = &mut body.limits;
     let kept = limits.next.len() == body.record.len();
     std::mem::swap(&mut limits.least, &mut limits.next);

@@ -38,7 +38,7 @@ pub fn tally(
     let rules = Rules::new(cell, options, law.counting());
     let list = &families.list;
     let ends = in_rows(&list.state.columns, n, loops.about().columns);
-    let angles = if kind.bond_based { vec![] } else { angles(list) };
+    let angles = if kind.bond_based && !list.scatter.heated() { vec![] } else { angles(list) };
     let now = Moment { held: list.state.held, ..law.moment(false) };
     // Nothing is written: `keep` is not set.
     let memory = list.state.remembered().as_ptr().cast_mut();

@@ -10,7 +10,7 @@ use crate::families::shares::BodyShare;
 use crate::families::tiles::TileWindow;
 use crate::families::{Cell, FamilyOptions, Law, PeriView};
 use crate::lattice::sweep::Mode;
-use crate::lattice::{hold, keep_earlier};
+use crate::lattice::{dilate, hold, keep_earlier};
 use crate::law::kernels::Loops;
 use crate::law::moment::COLUMNS;
 use crate::law::moment::Moment;
@@ -67,6 +67,7 @@ pub fn forces(
     }
     let particle = std::mem::take(&mut list.particle);
     let stiffness = std::mem::take(&mut list.scatter.stiffness);
+    let strain = list.scatter.strains().to_vec();
     let (kind_of, only) = (view.kind, only(list));
     let sites = Sites {
         count: n,
@@ -76,6 +77,7 @@ pub fn forces(
         kind: kind_of,
         only,
         stiffness: &stiffness,
+        strain: &strain,
     };
     let mut sweep = |list: &mut ListBody, numbers: usize, act: &Act| {
         let columns = std::mem::take(&mut list.state.columns);
@@ -127,7 +129,7 @@ pub fn forces(
     } else if !kind.bond_based {
         clear_sums(list, 1);
         sweep(list, 0, &|s, w, share| s.add_up::<Dilatation>(&moving, w, share));
-        loops.dilatations(settling, &mut list.state, &sites);
+        dilate(loops, settling, &mut list.state, &sites);
     }
     if kind.stiffened {
         stiffen(settling, &mut list.state, &sites);

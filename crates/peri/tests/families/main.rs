@@ -28,4 +28,5 @@ mod textbook;
 #[path = "../../../../tests/common/threads.rs"]
 mod threads;
 mod tiles;
+mod warm;
 mod waves;

@@ -7,7 +7,7 @@ use perigrain_world::World;
 /// Energies since the first load step, in the unit of energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// Work of what stands on paths, and of loads on free particles.
+    /// Work of what stands on paths, of loads on free particles, and of heat that strains bonds.
     pub work: f64,
     /// Change of the potential energy.
     pub energy: f64,
@@ -30,6 +30,8 @@ pub(in crate::run) struct Books {
     first: f64,
     /// The energy at the last equilibrium, or behind the last break.
     last: f64,
+    /// What heat had added to that of bonds by then.
+    warmed: f64,
     /// Forces of bonds and contacts, without those of fixes, as they are now and were at the last equilibrium.
     inner: Vec<[f64; 3]>,
     before: Vec<[f64; 3]>,
@@ -59,6 +61,7 @@ impl Books {
     pub fn begin(&mut self, w: &World, body: &Body) {
         let energy = energy(w, body);
         (self.first, self.last) = (energy, energy);
+        self.warmed = warmed(w);
         self.load(w, body);
         self.keep(w);
     }
@@ -97,6 +100,9 @@ impl Books {
             false => [-0.5 * (inner[i][d] + before[i][d]) * path(i, d), 0.0],
             true => [0.5 * (old[i][d] + new[i][d]) * path(i, d), 0.0],
         });
+        let heat = warmed(w) - self.warmed;
+        self.warmed += heat;
+        let work = work + heat;
         self.numbers.work += work;
         self.numbers.energy = energy - self.first;
         let given_up = self.last + work - energy;
@@ -123,6 +129,11 @@ impl Books {
 fn energy(w: &World, body: &Body) -> f64 {
     let of = |list: &[f64], i: usize| list.get(i).copied().unwrap_or(0.0);
     par::sum(w.n(), |i| (of(&w.tally.atom, i) + of(&w.tally.bond_atom, i)) * body.weight[i])
+}
+
+/// What heat has added to the energy of bonds so far.
+fn warmed(w: &World) -> f64 {
+    w.families.as_ref().map_or(0.0, |families| families.warmed)
 }
 
 /// Two sums over the components of particles, in an order that no number of threads changes.

@@ -178,6 +178,9 @@ pub fn statics(
         }
     }
     implicit(w, false);
+    if let Some(families) = &mut *w.families {
+        families.counts_warming = false;
+    }
     let steps = w.clock.step - first;
     (w.clock.last, w.clock.stop) = (w.clock.step, w.clock.step);
     all.seconds = clock.elapsed().as_secs_f64();
@@ -200,6 +203,9 @@ pub(super) fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
     if w.families.as_ref().is_some_and(|families| !families.breaking_enabled) {
         // Limits that rise under compression count from the stretches of the evaluation before.
         plan.run(w, &tick(w, false), &[Stage::PreForce, Stage::Force, Stage::PostForce])?;
+    }
+    if let Some(families) = &mut *w.families {
+        families.counts_warming = true;
     }
     Ok(())
 }
