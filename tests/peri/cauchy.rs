@@ -10,7 +10,7 @@ fn try_run(deck: &str, force_list: bool) -> Result<(World, String), String> {
     let log = Log::new(Some(Box::new(screen.clone())));
     let mut session = Session::new(Options { log, force_list, ..Options::default() }).unwrap();
     match session.run_text("own.in", deck) {
-        Ok(()) => Ok((session.world, screen.text())),
+        Ok(_) => Ok((session.world, screen.text())),
         Err(e) => Err(format!("{e}")),
     }
 }
