@@ -102,6 +102,9 @@ enum Property {
     /// T0, at which the material is free of stress; 0 by default [temperature].
     #[word("stress_free")]
     StressFree(#[word(name = "value", what = "stress_free")] At<f64>),
+    /// The fraction of plastic work that becomes heat under `fix heat/peri`; 0.9 by default.
+    #[word("taylor_quinney")]
+    TaylorQuinney(#[word(name = "value", what = "taylor_quinney")] At<f64>),
 }
 
 impl CommandStyle for MaterialStyle {
@@ -220,6 +223,7 @@ impl Property {
             Self::HeatCapacity(at) => (m.thermal.heat_capacity = at.value, at).1,
             Self::Expansion(at) => (m.thermal.expansion = at.value, at).1,
             Self::StressFree(at) => (m.thermal.stress_free = at.value, at).1,
+            Self::TaylorQuinney(at) => (m.thermal.taylor_quinney = at.value, at).1,
         }
     }
 }

@@ -108,6 +108,14 @@ impl Elastic {
         Ok(Response { memory, released, ..strained.response(self, after) })
     }
 
+    /// What flow and damage leave as they are: the stress and the energy of what was remembered.
+    ///
+    /// # Errors
+    /// det F is not positive.
+    pub fn frozen(&self, f: &Mat3, memory: &Memory) -> Result<Response, Failure> {
+        Ok(Strained::new(f, &memory.plastic)?.response(self, *memory))
+    }
+
     /// Hencky elasticity, plastic flow and damage.
     ///
     /// # Errors

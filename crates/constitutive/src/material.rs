@@ -55,6 +55,18 @@ impl Material {
         }
     }
 
+    /// The same while nothing flows and damage does not grow: what is stored at other strains and the same memory.
+    ///
+    /// # Errors
+    /// The deformation gradient turns matter inside out.
+    pub fn frozen(&self, f: &Mat3, memory: &Memory) -> Result<Response, Failure> {
+        match &self.law {
+            Law::Linear => Ok(self.elastic.linear(f, memory)),
+            Law::NeoHooke => self.elastic.neo_hooke(f, memory),
+            Law::Hencky | Law::Brittle(_) | Law::Plastic { .. } => self.elastic.frozen(f, memory),
+        }
+    }
+
     /// Bulk modulus K [pressure].
     pub fn bulk(&self) -> f64 {
         self.elastic.bulk

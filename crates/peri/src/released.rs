@@ -119,10 +119,12 @@ impl Families {
     /// last evaluation.
     pub fn warming(&mut self, view: &PeriView, [old, new]: [&[f64]; 2]) -> f64 {
         let cell = self.cell(view);
+        self.law.frozen = true;
         let [before, after] = [old, new].map(|strain| {
             self.warm(strain);
             self.living_energy(view, &cell)
         });
+        self.law.frozen = false;
         after - before
     }
 

@@ -36,8 +36,8 @@ pub struct Material {
     pub date: String,
 }
 
-/// Heat in a material; what is not given is 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+/// Heat in a material; what is not given is 0, but for the heat of flow.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Thermal {
     /// Conductivity k, W/(m K) in SI.
     pub conductivity: f64,
@@ -47,7 +47,24 @@ pub struct Thermal {
     pub expansion: f64,
     /// The temperature at which it is free of stress, K in SI.
     pub stress_free: f64,
+    /// The fraction β of plastic work that becomes heat (Taylor & Quinney 1934).
+    pub taylor_quinney: f64,
 }
+
+impl Default for Thermal {
+    fn default() -> Self {
+        Self {
+            conductivity: 0.0,
+            heat_capacity: 0.0,
+            expansion: 0.0,
+            stress_free: 0.0,
+            taylor_quinney: TAYLOR_QUINNEY,
+        }
+    }
+}
+
+/// What is taken of most metals.
+const TAYLOR_QUINNEY: f64 = 0.9;
 
 /// The two ways to define when a bond breaks.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -118,6 +135,7 @@ impl Material {
             "heat_capacity" => r.heat_capacity.as_ref().map_or(at(0..0), |s| at(s.span())),
             "expansion" => r.expansion.as_ref().map_or(at(0..0), |s| at(s.span())),
             "stress_free" => r.stress_free.as_ref().map_or(at(0..0), |s| at(s.span())),
+            "taylor_quinney" => r.taylor_quinney.as_ref().map_or(at(0..0), |s| at(s.span())),
             _ => at(r.E.span()),
         };
         match material.implausible() {
@@ -179,7 +197,7 @@ impl Material {
         if self.tensile.is_some_and(|f| !positive(f)) {
             return Some(("ft", "ft must be positive"));
         }
-        let Thermal { conductivity, heat_capacity, expansion, stress_free } = self.thermal;
+        let Thermal { conductivity, heat_capacity, expansion, stress_free, taylor_quinney } = self.thermal;
         let given = |x: f64| x.is_finite() && x >= 0.0;
         if !given(conductivity) {
             return Some(("conductivity", "conductivity must not be negative"));
@@ -192,6 +210,9 @@ impl Material {
         }
         if !stress_free.is_finite() {
             return Some(("stress_free", "stress_free must be a temperature"));
+        }
+        if !(0.0..=1.0).contains(&taylor_quinney) {
+            return Some(("taylor_quinney", "taylor_quinney lies between 0 and 1"));
         }
         None
     }

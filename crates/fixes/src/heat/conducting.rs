@@ -11,6 +11,7 @@ use perigrain_peri::conduction::implicit::{EXACT, Step};
 use perigrain_peri::families::Families;
 use perigrain_plan::Tick;
 use perigrain_styles::matter::publish;
+use perigrain_world::columns::PLASTIC_HEAT;
 use perigrain_world::{Key, Named, Numbers, SlotId, World};
 
 /// The part of the longest stable step that explicit steps have.
@@ -56,7 +57,7 @@ impl Conducting {
         Self { line, keys, temperature, flow, slot: at.0, span: at.1, body: None }
     }
 
-    /// A step: heat comes in, and every so many steps is conducted.
+    /// A step: heat comes in, of flow in the step before too, and every so many steps is conducted.
     pub fn act(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         let first = self.body.is_none();
         let body = match self.body.take() {
@@ -94,6 +95,10 @@ impl Conducting {
         let flow = w.columns.get_scalar(self.flow).unwrap_or(&[]);
         par::each((&mut received[..], flow), |_, (received, flow): (&mut [f64], &[f64])| {
             received.iter_mut().zip(flow).for_each(|(sum, flow)| *sum += t.dt * flow);
+        });
+        let plastic = w.columns.scalar(*PLASTIC_HEAT, n);
+        par::each((&mut received[..], &mut plastic[..]), |_, (received, heat): (&mut [f64], &mut [f64])| {
+            received.iter_mut().zip(heat).for_each(|(sum, heat)| *sum += std::mem::take(heat));
         });
         memo[0] += 1.0;
         memo[1] += t.dt;

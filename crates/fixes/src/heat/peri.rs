@@ -9,7 +9,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Kind, Syntax, Value, Words, alternatives, one_in, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
+use perigrain_world::columns::{HEATFLOW, PLASTIC_HEAT, TEMPERATURE};
 use perigrain_world::field::{COLUMNS, FACTS, FAMILIES, KIND, MASK, MASS, MEMO, SLOTS, VOLUME};
 use perigrain_world::{GroupId, Key, Numbers, World};
 
@@ -159,7 +159,7 @@ impl Fix for Declared {
                 .help("write `fix ID all property/atom temperature heatflow` before the run")
                 .into());
         };
-        let names = [temperature, flow, keys.memo, keys.m, keys.received].map(Key::text);
+        let names = [temperature, flow, keys.memo, keys.m, keys.received, *PLASTIC_HEAT].map(Key::text);
         let needs = Needs::new()
             .read(COLUMNS | MASS | KIND | MASK | VOLUME | FAMILIES | FACTS)
             .keep(COLUMNS | MEMO)

@@ -140,6 +140,9 @@ impl Op for Force {
         }
         let mut f = std::mem::take(&mut w.particles.f);
         families.finish(&view(w)?, &mut f, begun, tally);
+        if let Some(thermal) = self.thermal.as_ref().filter(|_| advance) {
+            thermal.warm(&families, w);
+        }
         if advance && families.options.reunite && families.parted(|i| reunion::outside(w, i)) {
             // Contacts are looked for anew in the next step.
             w.rebuild.due = true;

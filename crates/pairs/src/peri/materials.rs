@@ -369,6 +369,7 @@ fn of(m: &Material, law: &'static Style) -> Stuff {
             heat_capacity: m.thermal.heat_capacity,
             expansion: m.thermal.expansion,
             stress_free: m.thermal.stress_free,
+            taylor_quinney: m.thermal.taylor_quinney,
             ..Moduli::default()
         },
         stress: None,

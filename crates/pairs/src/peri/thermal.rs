@@ -5,12 +5,14 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::par;
 use perigrain_peri::families::{Criterion, Families, FamilyOptions, PeriView};
 use perigrain_styles::peri_view::view;
-use perigrain_world::columns::TEMPERATURE;
+use perigrain_world::columns::{PLASTIC_HEAT, TEMPERATURE};
 use perigrain_world::{Numbers, World};
 
 /// Thermal strains ε = α_T (T − T0) of particles.
 pub struct Thermal {
     temperature: Numbers,
+    /// Flow of materials depends on temperatures, and warms.
+    softens: bool,
     /// α_T and T0 by type − 1.
     by_type: Vec<[f64; 2]>,
     /// Those of the last evaluation; empty before the first.
@@ -36,9 +38,18 @@ impl Thermal {
     /// # Errors
     /// Laws whose bonds do not strain thermally, and what changes limits in another way.
     pub fn of(style: &Solid, options: &FamilyOptions, w: &World, span: Span) -> Result<Option<Self>> {
-        let Some(temperature) = w.columns.property(*TEMPERATURE).filter(|_| style.expands()) else {
+        let softens =
+            style.law.kind.correspondence && style.law.materials.iter().flatten().any(|m| m.remembers());
+        let expands = style.expands();
+        let Some(temperature) = w.columns.property(*TEMPERATURE).filter(|_| expands || softens) else {
             return Ok(None);
         };
+        let by_type = style.law.moduli.iter().map(|m| [m.expansion, m.stress_free]).collect();
+        let own =
+            Self { temperature, softens, by_type, last: vec![], kept: vec![], places: vec![], added: None };
+        if !expands {
+            return Ok(Some(own));
+        }
         let (kind, refuse) = (style.law.kind, |text: String, help: &str| {
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
             Err(d
@@ -48,7 +59,7 @@ impl Thermal {
         });
         if !(kind.plain() || kind.strains_thermally()) {
             let text = format!("bonds of pair_style {} have no thermal strain", style.name);
-            return refuse(text, "peri/pmb and peri/lps have it");
+            return refuse(text, "peri/pmb, peri/lps and peri/cauchy have it");
         }
         if options.criterion != Criterion::Stretch {
             let text =
@@ -70,8 +81,7 @@ impl Thermal {
                 .help("declare `fix property/atom temperature heatflow` before the first run")
                 .into());
         }
-        let by_type = style.law.moduli.iter().map(|m| [m.expansion, m.stress_free]).collect();
-        Ok(Some(Self { temperature, by_type, last: vec![], kept: vec![], places: vec![], added: None }))
+        Ok(Some(own))
     }
 
     /// Gives families the strains at the present temperatures.
@@ -79,6 +89,13 @@ impl Thermal {
     /// # Errors
     /// As `view` of a world.
     pub fn begin(&mut self, families: &mut Families, w: &World) -> Result<()> {
+        families.law.temperature.clear();
+        if self.softens {
+            families.law.temperature.extend_from_slice(w.columns.get_scalar(self.temperature).unwrap_or(&[]));
+        }
+        if !self.expands() {
+            return Ok(());
+        }
         let now = self.strains(w);
         if self.kept.is_empty() {
             // Those of an earlier run.
@@ -105,6 +122,9 @@ impl Thermal {
     /// # Errors
     /// As `view` of a world.
     pub fn end(&mut self, families: &mut Families, w: &World) -> Result<()> {
+        if !self.expands() {
+            return Ok(());
+        }
         let counted = families.counts_losses || families.counts_warming;
         if counted && self.kept.len() == self.last.len() && self.kept != self.last {
             let (here, change) = (view(w)?, [&self.kept[..], &self.last[..]]);
@@ -125,6 +145,20 @@ impl Thermal {
             self.places.clone_from(&w.particles.x);
         }
         Ok(())
+    }
+
+    fn expands(&self) -> bool {
+        self.by_type.iter().any(|[expansion, _]| *expansion != 0.0)
+    }
+
+    /// Gives `fix heat/peri` what flow has turned into heat in the evaluation that has ended.
+    pub fn warm(&self, families: &Families, w: &mut World) {
+        let n = w.n();
+        if self.softens && w.columns.get_scalar(*PLASTIC_HEAT).is_some() {
+            let mut heat = std::mem::take(w.columns.scalar(*PLASTIC_HEAT, n));
+            families.add_plastic_heat(&w.particles.kind, &mut heat);
+            *w.columns.scalar(*PLASTIC_HEAT, n) = heat;
+        }
     }
 
     fn strains(&self, w: &World) -> Vec<f64> {

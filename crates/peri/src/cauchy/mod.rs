@@ -26,15 +26,15 @@ pub mod stress;
 
 use perigrain_constitutive::{Failure, Memory};
 
-/// Numbers of E, P and W of a site.
-pub(crate) const LAST: usize = 19;
+/// Numbers of E, P, W and the temperature of a site.
+pub(crate) const LAST: usize = 20;
 
 /// What the sites of a body (cells or records) have under correspondence.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Continuum {
     /// What materials remember, [`Memory::NUMBERS`] for each site; empty where no material remembers.
     pub memory: Vec<f64>,
-    /// E, P and W of the last step that advanced, in rows of [`LAST`] numbers, where materials remember: a site that is looked at where the step
+    /// E without thermal strain, P, W and the temperature of the last step that advanced, in rows of [`LAST`] numbers, where materials remember: a site that is looked at where the step
     /// has left it has the stress of that step, to the last bit and whatever the rate.
     pub last: Vec<f64>,
     /// The least eigenvalue of K of each site's whole family.
@@ -49,6 +49,9 @@ pub struct Continuum {
     /// What the last evaluation turned into heat, and what it took as fracture energy: over volumes of sites, by chunks of sites.
     #[serde(skip)]
     pub lost: Vec<[f64; 2]>,
+    /// Plastic work of each site in the last evaluation [energy]; empty where temperatures have no effect.
+    #[serde(skip)]
+    pub flowed: Vec<f64>,
     /// Sites of the last evaluation that bear nothing: damaged through, or torn; ascending.
     #[serde(skip)]
     pub spent: Vec<u32>,
@@ -63,6 +66,7 @@ impl Continuum {
         8 * (self.memory.len() + self.last.len() + self.whole.len() + self.energy.len())
             + 48 * (self.stress.len() + self.inverse.len())
             + 16 * self.lost.len()
+            + 8 * self.flowed.len()
     }
 
     /// What a site remembers.

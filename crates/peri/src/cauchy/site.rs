@@ -59,6 +59,10 @@ pub(crate) struct Rules<'a> {
     pub(crate) dt: f64,
     /// Volumes of particles.
     pub(crate) volume: &'a [f64],
+    /// Temperatures of particles; empty where they have no effect.
+    pub(crate) temperature: &'a [f64],
+    /// Nothing flows.
+    pub(crate) frozen: bool,
 }
 
 /// E = H K⁻¹ of a site with these sums H.
@@ -108,13 +112,15 @@ pub(crate) fn settle(
     rules: &Rules,
 ) {
     let SiteState { weighted, columns, sums, continuum, .. } = state;
-    let Continuum { memory, last, energy, stress, inverse, whole, .. } = continuum;
+    let Continuum { memory, last, energy, stress, inverse, whole, flowed, .. } = continuum;
     let n = sites.count;
+    flowed.resize(if rules.temperature.is_empty() { 0 } else { n }, 0.0);
     energy.resize(n, 0.0);
     stress.resize(n, [0.0; 6]);
     let remembers = !memory.is_empty();
     let (columns, memory, last) = (Shared::new(columns), Shared::new(memory), Shared::new(last));
-    let (energy, stress) = (Shared::new(energy), Shared::new(stress));
+    let (energy, stress, heated) = (Shared::new(energy), Shared::new(stress), !flowed.is_empty());
+    let flowed = Shared::new(flowed);
     let mut made = vec![Made::default(); n.div_ceil(CHUNK)];
     let all = Shared::new(&mut made);
     par::for_chunks(n, |range| {
@@ -142,8 +148,11 @@ pub(crate) fn settle(
                     let material = rules.materials.get(kind).and_then(Option::as_ref);
                     let volume = rules.volume[p];
                     let (dt, spacing) = (rules.dt, size.of(volume));
-                    let moment = Moment { dt, temperature: None, spacing, advance: settling.advance };
-                    let own = settled(material, &bonds, past.as_mut(), &moment).unwrap_or_else(|why| {
+                    let temperature = rules.temperature.get(p).copied();
+                    let moment = Moment { dt, temperature, spacing, advance: settling.advance };
+                    let strain = sites.strain.get(site).copied().unwrap_or(0.0);
+                    let how = How { moment, strain, frozen: rules.frozen };
+                    let own = settled(material, &bonds, past.as_mut(), &how).unwrap_or_else(|why| {
                         made.fault.get_or_insert((site as u32, why));
                         Settled::default()
                     });
@@ -158,6 +167,10 @@ pub(crate) fn settle(
                 made.spent.push(site as u32);
             }
             (energy[k], stress[k]) = (own.energy, own.stress);
+            if heated {
+                // SAFETY: each site is settled once.
+                unsafe { flowed.get(site..site + 1)[0] = own.dissipated * rules.volume[p] };
+            }
             // SAFETY: places differ from site to site, and lie in the columns.
             unsafe {
                 for (a, c) in (0..9).map(|k| (k / 3, k % 3)) {
@@ -202,7 +215,7 @@ struct Bonds<'a> {
 struct Past<'a> {
     /// Of its material.
     memory: &'a mut [f64],
-    /// E, P and W of the last step.
+    /// E without thermal strain, P, W and the temperature of the last step.
     last: &'a mut [f64],
 }
 
@@ -211,20 +224,20 @@ impl Past<'_> {
         self.memory.first_chunk().map_or_else(Memory::default, |row| Memory::from_numbers(*row))
     }
 
-    /// P and W of the last step, if E was this.
-    fn answered(&self, e: &Mat3) -> Option<(Mat3, f64)> {
+    /// P and W of the last step, if E and the temperature were these.
+    fn answered(&self, e: &Mat3, temperature: f64) -> Option<(Mat3, f64)> {
         let (known, rest) = self.last.split_at(9);
         let (p, w) = rest.split_at(9);
-        let same = known == e.as_flattened();
+        let same = known == e.as_flattened() && w[1] == temperature;
         same.then(|| (std::array::from_fn(|a| std::array::from_fn(|c| p[3 * a + c])), w[0]))
     }
 
     /// Keeps what a step that advances has come to.
-    fn keep(&mut self, e: &Mat3, response: &Response) {
+    fn keep(&mut self, e: &Mat3, temperature: f64, response: &Response) {
         self.memory.copy_from_slice(&response.memory.numbers());
         self.last[..9].copy_from_slice(e.as_flattened());
         self.last[9..18].copy_from_slice(response.piola.as_flattened());
-        self.last[18] = response.energy;
+        (self.last[18], self.last[19]) = (response.energy, temperature);
     }
 }
 
@@ -246,14 +259,54 @@ struct Settled {
 }
 
 impl Settled {
-    /// A site with this gradient, stress and energy.
-    fn new(bonds: &Bonds, e: &Mat3, piola: &Mat3, energy: f64) -> Self {
+    /// A site with this deformation, stress and energy.
+    fn new(bonds: &Bonds, strain: &Strain, piola: &Mat3, energy: f64) -> Self {
+        let piola = &strain.whole(piola);
         let mut pull = times(piola, bonds.inverse);
-        for (row, e) in pull.iter_mut().zip(e) {
+        for (row, e) in pull.iter_mut().zip(&strain.e) {
             row.iter_mut().zip(e).for_each(|(m, e)| *m -= bonds.gamma * e);
         }
-        let stress = kirchhoff(piola, &deformation(e));
+        let stress = kirchhoff(piola, &deformation(&strain.e));
         Self { pull, gamma: bonds.gamma, stress, energy, ..Self::default() }
+    }
+}
+
+/// How a site is settled.
+struct How {
+    moment: Moment,
+    /// Thermal strain.
+    strain: f64,
+    /// Nothing flows.
+    frozen: bool,
+}
+
+/// The strain of a site.
+struct Strain {
+    /// E = F − 1.
+    e: Mat3,
+    /// The same without thermal strain: F/(1 + ε) − 1, what materials answer to.
+    mechanical: Mat3,
+    /// 1 + ε.
+    thermal: f64,
+}
+
+impl Strain {
+    fn new(e: Mat3, thermal: f64) -> Self {
+        if thermal == 0.0 {
+            // To the last bit.
+            return Self { e, mechanical: e, thermal: 1.0 };
+        }
+        let mut mechanical = e;
+        for (k, row) in mechanical.iter_mut().enumerate() {
+            row[k] -= thermal;
+            row.iter_mut().for_each(|x| *x /= 1.0 + thermal);
+        }
+        Self { e, mechanical, thermal: 1.0 + thermal }
+    }
+
+    /// ∂W/∂F from the derivative by F/(1 + ε).
+    fn whole(&self, piola: &Mat3) -> Mat3 {
+        if self.thermal == 1.0 { *piola } else { piola.map(|row| row.map(|p| p / self.thermal)) }
     }
 }
 
@@ -263,28 +316,35 @@ fn settled(
     material: Option<&Material>,
     bonds: &Bonds,
     past: Option<&mut Past>,
-    moment: &Moment,
+    how: &How,
 ) -> Result<Settled, Failure> {
     let at_rest = Settled { gamma: bonds.gamma, ..Settled::default() };
     let Some(material) = material else { return Ok(at_rest) };
+    let moment = &how.moment;
     let Some(past) = past else {
-        if bonds.h == [[0.0; 3]; 3] {
+        if bonds.h == [[0.0; 3]; 3] && how.strain == 0.0 {
             // To the last bit.
             return Ok(at_rest);
         }
-        let e = gradient(&bonds.h, bonds.inverse);
-        let response = material.respond(&deformation(&e), &Memory::default(), moment)?;
-        return Ok(Settled::new(bonds, &e, &response.piola, response.energy));
+        let strain = Strain::new(gradient(&bonds.h, bonds.inverse), how.strain);
+        let response = material.respond(&deformation(&strain.mechanical), &Memory::default(), moment)?;
+        return Ok(Settled::new(bonds, &strain, &response.piola, response.energy));
     };
-    let e = gradient(&bonds.h, bonds.inverse);
-    let memory = past.remembered();
-    if let Some((piola, energy)) = past.answered(&e).filter(|_| !moment.advance || e == [[0.0; 3]; 3]) {
-        return Ok(Settled::new(bonds, &e, &piola, energy));
+    let strain = Strain::new(gradient(&bonds.h, bonds.inverse), how.strain);
+    let (e, memory) = (&strain.mechanical, past.remembered());
+    if how.frozen {
+        let response = material.frozen(&deformation(e), &memory)?;
+        return Ok(Settled::new(bonds, &strain, &response.piola, response.energy));
     }
-    let response = material.respond(&deformation(&e), &memory, moment)?;
+    let temperature = moment.temperature.unwrap_or(0.0);
+    let known = past.answered(e, temperature).filter(|_| !moment.advance || *e == [[0.0; 3]; 3]);
+    if let Some((piola, energy)) = known {
+        return Ok(Settled::new(bonds, &strain, &piola, energy));
+    }
+    let response = material.respond(&deformation(e), &memory, moment)?;
     if moment.advance {
-        past.keep(&e, &response);
+        past.keep(e, temperature, &response);
     }
     let Response { dissipated, released, .. } = response;
-    Ok(Settled { dissipated, released, ..Settled::new(bonds, &e, &response.piola, response.energy) })
+    Ok(Settled { dissipated, released, ..Settled::new(bonds, &strain, &response.piola, response.energy) })
 }

@@ -24,6 +24,17 @@ impl Families {
         Some(State { stress, memory: own.memory_of(site), torn })
     }
 
+    /// Adds to each particle what its flow in the last evaluation has turned into heat.
+    pub fn add_plastic_heat(&self, kinds: &[u16], heat: &mut [f64]) {
+        let lattices = self.lattices.iter().map(|body| (&body.state.continuum, &body.particle));
+        for (own, particle) in lattices.chain([(&self.list.state.continuum, &self.list.particle)]) {
+            let worked = own.flowed.iter().zip(particle).filter(|(work, _)| **work != 0.0);
+            for (work, p) in worked.map(|(work, p)| (work, *p as usize)) {
+                heat[p] += self.law.of(kinds[p]).taylor_quinney * work;
+            }
+        }
+    }
+
     /// Whether anything is remembered beside which bonds live.
     pub fn remembers(&self) -> bool {
         let lattices = self.lattices.iter().map(|body| &body.state);

@@ -32,6 +32,12 @@ pub struct Law {
     pub surface: bool,
     /// The time step of the last force evaluation: relaxation depends on it.
     pub dt: f64,
+    /// Temperatures of particles in the last force evaluation; empty where they have no effect.
+    #[serde(skip)]
+    pub temperature: Vec<f64>,
+    /// Sites are looked at as they are: nothing flows.
+    #[serde(skip)]
+    pub frozen: bool,
     /// Energies asked for are those that damage of softening bonds has taken.
     #[serde(skip)]
     pub lost: bool,
@@ -156,7 +162,14 @@ impl Law {
 
     /// What settles sites under correspondence.
     pub(crate) fn rules<'a>(&'a self, view: &PeriView<'a>) -> Rules<'a> {
-        Rules { materials: &self.materials, control: self.control, dt: self.dt, volume: view.volume }
+        Rules {
+            materials: &self.materials,
+            control: self.control,
+            dt: self.dt,
+            volume: view.volume,
+            temperature: &self.temperature,
+            frozen: self.frozen,
+        }
     }
 
     /// The moduli of a type.

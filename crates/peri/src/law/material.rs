@@ -76,6 +76,9 @@ pub struct Moduli {
     /// The temperature at which there is no thermal strain.
     #[serde(default)]
     pub stress_free: f64,
+    /// The fraction of plastic work that becomes heat.
+    #[serde(default)]
+    pub taylor_quinney: f64,
 }
 
 impl Moduli {

@@ -186,11 +186,13 @@ impl Style {
         self.curve.is_some()
     }
 
-    /// Whether it is linear in a bond's stretch with columns A and B of both ends, which take up thermal strains.
+    /// Whether sites take up thermal strains: under correspondence, and where it is linear in a bond's stretch with columns A and B of
+    /// both ends.
     pub fn strains_thermally(&self) -> bool {
-        (self.stiffened || !self.bond_based)
+        let linear = (self.stiffened || !self.bond_based)
             && self.losses == Losses::None
-            && self.own.loops().about().memory == 0
+            && self.own.loops().about().memory == 0;
+        self.correspondence || linear
     }
 
     /// Whether sites have a yield surface.

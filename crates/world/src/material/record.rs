@@ -42,6 +42,8 @@ macro_rules! record {
             #[serde(alias = "alphaT")]
             pub expansion: Option<Spanned<String>>,
             pub stress_free: Option<Spanned<String>>,
+            #[serde(alias = "beta")]
+            pub taylor_quinney: Option<Spanned<f64>>,
             elastic: Option<Spanned<String>>,
             hardening: Option<Spanned<String>>,
             table: Option<Spanned<Vec<(f64, String)>>>,
@@ -97,6 +99,10 @@ impl Record {
             heat_capacity: value(&self.heat_capacity, HEAT_CAPACITY, "`heat_capacity = \"383 J/(kg K)\"`")?,
             expansion: value(&self.expansion, EXPANSION, "`expansion = \"17e-6 1/K\"`")?,
             stress_free: value(&self.stress_free, TEMPERATURE, "`stress_free = \"293 K\"`")?,
+            taylor_quinney: self
+                .taylor_quinney
+                .as_ref()
+                .map_or(Thermal::default().taylor_quinney, |b| *b.get_ref()),
         })
     }
 
