@@ -164,3 +164,55 @@ fn what_is_refused() {
     ));
     assert!(e.contains("has no stress for particle"), "{e}");
 }
+
+/// Words of a material that expands, and lines that give particles a temperature of 50.
+const WARM: [&str; 2] = [
+    "expansion 2e-5 stress_free -50 conductivity 1 heat_capacity 400",
+    "fix t all property/atom temperature heatflow\nset group all temperature 50\n",
+];
+
+#[test]
+fn a_held_block_that_is_warmed_bears_pressure_and_a_free_one_nothing() {
+    for list in [false, true] {
+        let [words, warm] = WARM;
+        let text = run(&format!("{}{warm}run 0\n{}", block(words, ""), strained(0.0)), list);
+        let held = printed(&text, "even ");
+        // F/(1 + ε) with ε = 2e-3: τ = −3K ln(1 + ε), F = 1.
+        let (log, volume) = (1.002f64.ln(), 8.0 * 6.0 * 5.0 * 1e-9);
+        let expected = [4.5 * K * log * log * volume, -3.0 * K * log, -3.0 * K * log, 0.0, 0.0];
+        for (own, expected) in held.iter().zip(expected) {
+            // Of even fields gradients are exact to rounding.
+            assert!((own - expected).abs() < 1e-12 * K * log.max(expected.abs() / K), "{held:?} {expected:?}");
+        }
+        let free = "displace_atoms all ramp x 0 0.002 x 0 1 units box\n\
+                    displace_atoms all ramp y 0 0.002 y 0 1 units box\n\
+                    displace_atoms all ramp z 0 0.002 z 0 1 units box\nrun 0\nprint \"free $(pe) $(fmax)\"\n";
+        let text = run(&format!("{}{warm}run 0\nprint \"held $(pe) $(fmax)\"\n{free}", block(words, "")), list);
+        let [held, free] = ["held ", "free "].map(|word| printed(&text, word));
+        // Places are rounded to 1e-16 of 8 spacings, strains of 2e-3 to 1e-12 of themselves, energies to its square.
+        assert!(free[0].abs() < 1e-20 * held[0] && free[1].abs() < 1e-10 * held[1], "{held:?} {free:?}");
+    }
+}
+
+#[test]
+fn flow_warms_and_warm_metal_yields_at_less() {
+    for list in [false, true] {
+        // Plastic strain in one step; the next one takes its heat, of which little is conducted: the strain is even.
+        let [_, warm] = WARM;
+        let words = "yield 4e8 conductivity 1 heat_capacity 400 taylor_quinney 0.8";
+        let heat = "fix heat all heat/peri every 1\ncompute t all property/atom temperature\ncompute mt all reduce ave c_t\n";
+        let displace = "displace_atoms all ramp x 0 0.02 x 0 1 units box\n";
+        let end = "run 1\nrun 1\nprint \"warm $(c_mt:%.15g) $(c_m[6]:%.15g)\"\n";
+        let text = run(&format!("{}{warm}{heat}run 0\n{displace}{end}", block(words, "")), list);
+        let own = printed(&text, "warm ");
+        let expected = 50.0 + 0.8 * 4e8 * own[1] / (7800.0 * 400.0);
+        // Sums over 240 points, and what the return to the yield surface leaves.
+        assert!(own[1] > 0.01 && (own[0] - expected).abs() < 1e-10 * expected, "{own:?} {expected}");
+        // (A + B ε̄ⁿ)(1 − T*) at T* = (50 − 0)/(200 − 0), without an effect of the rate.
+        let words = "yield 4e8 hardening johnson-cook B 3e8 n 0.5 C 0 m 1 rate0 1 Tr 0 Tm 200";
+        let text = run(&format!("{}{warm}run 0\n{displace}run 1\n{}", block(words, ""), strained(0.0)), list);
+        let own = printed(&text, "even ");
+        let expected = (4e8 + 3e8 * own[6].sqrt()) * 0.75;
+        assert!(own[6] > 0.01 && (own[5] / expected - 1.0).abs() < 1e-10, "{own:?} {expected}");
+    }
+}
