@@ -27,7 +27,8 @@ impl Style for HeatPeri {
             text: "ρ c dT/dt = Σ 3 (k/m + k'/m') ω w (T' − T) V' + q over the bonds of a particle, with the conductivity k and the specific \
                    heat c of its `material`, the weighted volume m = Σ ω w |ξ|² V' of its family at birth, and ω of the law (1/|ξ| for \
                    bond-based ones). An even gradient conducts exactly k inside a body; heat is kept to rounding. q is what `heatflow` \
-                   says, of contacts between grains for instance, and what `fix heat/held`, `heat/flux` and `heat/convect` bring. Particles of \
+                   says, of contacts between grains for instance, what `fix heat/held`, `heat/flux` and `heat/convect` bring, and \
+                   under `pair_style peri/cauchy` the fraction `taylor_quinney` of plastic work. Particles of \
                    the group without bonds do not conduct: `fix heat/flow` serves those.\n\n\
                    Needs `fix ID all property/atom temperature heatflow`, materials with `conductivity` and `heat_capacity`. The stable step of \
                    explicit conduction is mostly far longer than that of motion: it acts every n steps, n being 0.8 of it over the time \
@@ -35,7 +36,7 @@ impl Style for HeatPeri {
                    Euler, its linear system solved by conjugate gradients to 1e-10. Temperatures that materials turn into strain are under \
                    [material](material.md).\n\n\
                    Scalar (extensive): the heat of all particles, Σ ρ c V T. Vector of 6: heat that has come from held particles, fluxes, \
-                   fluids and `heatflow` since the fix was declared (extensive), steps from one action to the next, products of the last \
+                   fluids and, in one number, `heatflow` and flow since the fix was declared (extensive), steps from one action to the next, products of the last \
                    linear system.",
             example: "material glass E 72e9 nu 0.25 rho 2440 conductivity 1 heat_capacity 800\n\
                       pair_coeff * * material glass horizon 3.0001\n\

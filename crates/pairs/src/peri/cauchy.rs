@@ -41,10 +41,10 @@ struct Line {
 #[derive(Words)]
 #[word(what = "control of motions that no deformation gradient shows")]
 enum Control {
-    /// Springs of the stiffness G 15G/m, G being this factor and 15G/m the stiffness of the bonds of `peri/lps`.
+    /// Springs of the stiffness g 15G/m, g being this factor and 15G/m the stiffness of the bonds of `peri/lps`.
     Node {
         /// The factor, above 0 and at most 0.5.
-        #[word(name = "G", what = "the factor of node control")]
+        #[word(name = "g", what = "the factor of node control")]
         factor: At<f64>,
     },
 }
