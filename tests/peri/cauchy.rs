@@ -182,12 +182,16 @@ fn a_held_block_that_is_warmed_bears_pressure_and_a_free_one_nothing() {
         let expected = [4.5 * K * log * log * volume, -3.0 * K * log, -3.0 * K * log, 0.0, 0.0];
         for (own, expected) in held.iter().zip(expected) {
             // Of even fields gradients are exact to rounding.
-            assert!((own - expected).abs() < 1e-12 * K * log.max(expected.abs() / K), "{held:?} {expected:?}");
+            assert!(
+                (own - expected).abs() < 1e-12 * K * log.max(expected.abs() / K),
+                "{held:?} {expected:?}"
+            );
         }
         let free = "displace_atoms all ramp x 0 0.002 x 0 1 units box\n\
                     displace_atoms all ramp y 0 0.002 y 0 1 units box\n\
                     displace_atoms all ramp z 0 0.002 z 0 1 units box\nrun 0\nprint \"free $(pe) $(fmax)\"\n";
-        let text = run(&format!("{}{warm}run 0\nprint \"held $(pe) $(fmax)\"\n{free}", block(words, "")), list);
+        let text =
+            run(&format!("{}{warm}run 0\nprint \"held $(pe) $(fmax)\"\n{free}", block(words, "")), list);
         let [held, free] = ["held ", "free "].map(|word| printed(&text, word));
         // Places are rounded to 1e-16 of 8 spacings, strains of 2e-3 to 1e-12 of themselves, energies to its square.
         assert!(free[0].abs() < 1e-20 * held[0] && free[1].abs() < 1e-10 * held[1], "{held:?} {free:?}");

@@ -257,7 +257,13 @@ mod tests {
         assert!(near(cgs.young, 2e10) && near(cgs.density, 1.5) && near(cgs.tensile.unwrap(), 3e7));
         assert!(matches!(cgs.strength, Some(Strength::FractureEnergy(g)) if near(g, 1e4)));
         // 1 W/(m K) = 1e5 erg/(s cm K), 1 J/(kg K) = 1e4 erg/(g K).
-        let heat = Thermal { conductivity: 400.0, heat_capacity: 380.0, expansion: 1e-5, stress_free: 293.0 };
+        let heat = Thermal {
+            conductivity: 400.0,
+            heat_capacity: 380.0,
+            expansion: 1e-5,
+            stress_free: 293.0,
+            taylor_quinney: 0.9,
+        };
         let cgs =
             Material { thermal: heat, ..m.clone() }.in_units(UnitSystem::Cgs.mechanical().unwrap()).thermal;
         assert!(near(cgs.conductivity, 4e7) && near(cgs.heat_capacity, 3.8e6));
@@ -272,8 +278,13 @@ mod tests {
     fn heat_of_files() {
         let text = "conductivity='401 W/(m K)'\nheat_capacity='383 J/(kg K)'\nexpansion='17e-6 1/K'\nstress_free='293 K'";
         let heat = parse(&format!("{MINIMAL}{text}")).unwrap().thermal;
-        let expected =
-            Thermal { conductivity: 401.0, heat_capacity: 383.0, expansion: 17e-6, stress_free: 293.0 };
+        let expected = Thermal {
+            conductivity: 401.0,
+            heat_capacity: 383.0,
+            expansion: 17e-6,
+            stress_free: 293.0,
+            taylor_quinney: 0.9,
+        };
         assert_eq!(heat, expected);
         let short = "k='401 W/m/K'\ncp='383 J/kg/K'\nalphaT='17e-6 1/K'";
         let short = parse(&format!("{MINIMAL}{short}")).unwrap().thermal;

@@ -69,7 +69,13 @@ fn numbers_in_the_line() {
 fn heat_in_the_line() {
     let line =
         "material m E 1 nu 0.25 rho 1 conductivity 401 heat_capacity 385 expansion 1.7e-5 stress_free 293";
-    let heat = Thermal { conductivity: 401.0, heat_capacity: 385.0, expansion: 1.7e-5, stress_free: 293.0 };
+    let heat = Thermal {
+        conductivity: 401.0,
+        heat_capacity: 385.0,
+        expansion: 1.7e-5,
+        stress_free: 293.0,
+        ..Thermal::default()
+    };
     assert_eq!(parse(&si(), line).unwrap().thermal, heat);
     assert!(parse(&si(), "material m E 1 nu 0.25 rho 1 conductivity -1").is_err());
 }
