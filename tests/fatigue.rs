@@ -99,13 +99,14 @@ fn row(pull: &str, fatigue: &str) -> Vec<Vec<f64>> {
 fn cycles_go_as_a_power_of_the_load() {
     for (m, factor) in [(3, 8.0), (4, 16.0)] {
         let line = |ratio: &str| {
-            format!("fatigue init 1e9 {m} 0 grow 1e9 {m} cycles 1e30 batch 0 {ratio} tol 1e-10 file lives")
+            format!("fatigue init 1e9 {m} 0 grow 1e9 {m} cycles 1e20 batch 0 {ratio} tol 1e-10 file lives")
         };
         let once = row("1.0e-6", &line(""));
         let twice = row("2.0e-6", &line(""));
         let half = row("1.0e-6", &line("ratio 0.5"));
         let broken = once.last().unwrap()[3];
-        assert!(once.len() > 4 && broken > 6.0, "{once:?}");
+        // Three bonds reach over the missing point.
+        assert!(once.len() == 4 && broken == 3.0, "{once:?}");
         assert_eq!((once.len(), once.len()), (twice.len(), half.len()));
         for ((once, twice), half) in once.iter().zip(&twice).zip(&half).filter(|((row, _), _)| row[2] > 0.0) {
             // Which bonds break is the same.
@@ -114,7 +115,7 @@ fn cycles_go_as_a_power_of_the_load() {
             assert!((half[0] / once[0] / factor - 1.0).abs() < 1e-9, "{m}: {once:?} {half:?}");
         }
         // Torn apart: the rest of the cycles pass.
-        assert_eq!(once.last().unwrap()[0], 1e30);
+        assert_eq!(once.last().unwrap()[0], 1e20);
     }
 }
 
@@ -149,7 +150,7 @@ fn threads_and_ranks_leave_the_same_bits() {
     }
 }
 
-/// Lives come with restart files: cycles behind one are those of the session that goes on.
+/// Lives come with restart files: cycles behind one are those of the run that was not cut.
 #[test]
 fn lives_come_with_restart_files() {
     let folder = tempfile::tempdir().unwrap();

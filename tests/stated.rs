@@ -91,7 +91,12 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("addtorque_atom.rs", "regions", "only with `region`"),
     ("settorque_atom.rs", "regions", "only with `region`"),
     ("efield.rs", "regions", "only with `region`"),
+    ("heat/peri.rs", "facts", "only with edges"),
+    ("peri_strength.rs", "id", "only where a factor is refused"),
 ];
+
+/// Pages whose example solids of LAMMPS refuse.
+const OWN: [&str; 1] = ["fix peri/strength"];
 
 /// The ops that put particles elsewhere, by file. `tests/strangers/movers.rs` holds what each does to whatever has a direction: an op that
 /// joins this list has its lines there.
@@ -124,6 +129,9 @@ fn ops_touch_what_they_state_and_state_what_they_touch() {
         let _folder = Folder::new(ALONE.lock().unwrap());
         let deck = deck(&page.title(), page.doc.example);
         for compat in [false, true] {
+            if compat && OWN.contains(&&*page.title()) {
+                continue;
+            }
             wrong += &run(Path::new(&page.title()), &deck, &vec![], compat);
         }
     }

@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn what_the_syntax_wants_is_offered_wherever_it_stands() {
         check("material m f", &["material m file", "material m ft"]);
-        check("material m file ste", &["material m file steel.toml"]);
+        check("material m file alu", &["material m file alumina.toml"]);
         check("region r block I", &["region r block INF"]);
         check("region r block INF E", &["region r block INF EDGE"]);
         check("region r cylinder z 0 0 1 E", &["region r cylinder z 0 0 1 EDGE"]);

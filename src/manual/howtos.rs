@@ -15,8 +15,8 @@ macro_rules! embed {
 
 /// All of them, by name.
 pub const HOWTOS: &[HowTo] = embed! {
-    "agglomerate" "bench" "bodies" "cluster" "cores" "drum" "erosion" "first-crack" "from-python" "hopper" "impact" "laminate"
-    "long-runs" "material" "movie" "notch" "prompt" "report" "repose" "results" "sweep" "wrong-deck"
+    "agglomerate" "bench" "bodies" "cluster" "cores" "drum" "erosion" "first-crack" "from-python" "heat" "hopper" "impact" "laminate"
+    "long-runs" "material" "movie" "notch" "prompt" "report" "repose" "results" "slow" "sweep" "wrong-deck"
 };
 
 impl HowTo {

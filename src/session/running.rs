@@ -307,7 +307,7 @@ impl Session {
             s.add(vec![row], span);
         }
         s.at(span);
-        if !minimizing {
+        if pass != Pass::Minimization {
             s.end_computes()?;
         }
         crate::graph::virials::seal(&mut s)?;

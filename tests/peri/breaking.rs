@@ -189,7 +189,7 @@ fn criteria_that_do_not_fit_are_refused() {
         ("pair_style peri/pmb\nperi_modify break stress", "the tensile strength"),
         ("pair_style peri/pmb\nperi_modify break stress -1", "the tensile strength"),
         ("pair_style peri/pmb\nperi_modify break strength 1", "criterion of breaking"),
-        ("pair_style peri/pmb\nperi_modify break energy every 0", "every"),
+        ("pair_style peri/pmb\nperi_modify break energy every 0", "at least 1, not 0"),
         ("pair_style peri/pmb\nperi_modify break formula 2", "a bond-style variable"),
         (
             "pair_style peri/pmb\npair_coeff * * material m horizon 3.015\nperi_modify break formula v_none\nrun 0",

@@ -75,9 +75,9 @@ fn an_even_stretch_has_the_stress_and_the_energy_of_the_material() {
             // stress/atom is minus the stress times the volume in LAMMPS' sign: positive in tension.
             tau * 1e-9,
         ];
-        for (own, expected) in even.iter().zip(expected) {
+        for (k, (own, expected)) in even.iter().zip(expected).enumerate() {
             // Places of 1e-2 m are rounded to 1e-18 m, strains of 2e-2 over 1e-3 m to some 1e-13.
-            let size = expected.abs().max(1e-12 * K);
+            let size = if (1..=5).contains(&k) { tau } else { expected.abs().max(1.0) };
             assert!((own - expected).abs() < 1e-11 * size, "{list}: {own} {expected}\n{text}");
         }
     }
@@ -150,7 +150,7 @@ fn what_is_refused() {
     assert!(e.contains("takes its coefficients from materials"), "{e}");
     let flat = base.replace("0 0.0045 units", "0 0.0005 units");
     let e = refused(&format!("{flat}run 0\n"));
-    assert!(e.contains("lie in a plane") && e.contains("two layers"), "{e}");
+    assert!(e.contains("lie in a plane"), "{e}");
     let e = refused(
         &base
             .replace("peri/cauchy control node 0.2", "peri/lps")

@@ -116,7 +116,7 @@ fn tab_knows_what_the_syntax_wants() {
     }
     for (typed, wanted) in [
         // Files of materials, and colours.
-        ("material m file stee\t", "material m file steel.toml"),
+        ("material m file alu\t", "material m file alumina.toml"),
         ("dump_modify d backcolor gol\t", "dump_modify d backcolor gold"),
         ("dump d all image 9 a.png type type boxcolor gol\t", "boxcolor gold"),
         ("dump_modify d acolor 1 gol\t", "acolor 1 gold"),

@@ -149,7 +149,7 @@ pub const METAL: &str = "units si\natom_style peri\nboundary s s s\nlattice sc 0
     create_box 1 blk\ncreate_atoms 1 region blk\nset group all density 2400\nset group all volume 1e-9\n\
     material metal E 2.5e10 nu 0.3 rho 2400 yield 4e7 hardening linear H 1e9\n\
     variable u atom 6000.0*(x-0.0035)\nvelocity all set v_u 0 0 units box\n";
-pub const METAL_AGAIN: &str = "pair_style peri/cauchy\npair_coeff * * material metal horizon 2.015 s00 0.012\n\
+pub const METAL_AGAIN: &str = "pair_style peri/cauchy\npair_coeff * * material metal horizon 2.015 s00 0.006\n\
     peri_modify volume full\nneighbor 0.0006 bin\n\
     fix 1 all nve\ntimestep 5.0e-8\ncompute flow all peri/state/atom mises plastic damage\n\
     compute dsum all reduce sum c_flow[1] c_flow[2] c_flow[3]\n\

@@ -39,8 +39,9 @@ impl Style for MaterialStyle {
                    hardening. `hardening linear` needs H, `voce` sigma_inf and b (and may have H), `swift` eps0 and n, `table` a file, \
                    `johnson-cook` B, n, C, m, rate0, Tr and Tm. `cohesion`, `phi` and `psi` (and H) make flow of Drucker and Prager in \
                    place of that of Mises. Damage begins at `eps_f`, where wear by D1 to D5 is complete (with rate0, Tr and Tm), or at a tension of \
-                   `ft`, also without flow, and softens until `Gf` is spent. `conductivity`, `heat_capacity`, `expansion`, `stress_free` and \
-                   `taylor_quinney` are for solids whose particles have temperatures (`fix property/atom temperature heatflow`). A number without a use in the law is refused.\n\n\
+                   `ft`, also without flow, and softens until `Gf` is spent. A number without a use in the law is refused.\n\n\
+                   `conductivity`, `heat_capacity`, `expansion`, `stress_free` and `taylor_quinney` are for solids whose particles have \
+                   temperatures (`fix property/atom temperature heatflow`).\n\n\
                    Numbers in the line are in the deck's units. A file carries its own units and is converted (`units si cgs micro \
                    nano`). It is looked for beside the deck, in the working folder, then among the files built into perigrain: \
                    alumina.toml, brittle-plate.toml, impactor-steel.toml, laminate-impactor.toml, laminate-ply-1.toml to \

@@ -25,7 +25,8 @@ impl Style for PeriStateAtom {
             summary: "Stress, plastic strain and damage of each particle under pair_style peri/cauchy.",
             text: "Per-atom vector of the one quantity, or an array with a column for each. They are of the latest force evaluation; 0 \
                    before the first run, for particles without a family, and outside the group. Needs `pair_style peri/cauchy`.",
-            example: "pair_style peri/cauchy\ncompute a all peri/state/atom mises plastic damage",
+            example: "material copper E 1.17e11 nu 0.35 rho 8930 yield 4.0e8\npair_style peri/cauchy\n\
+                      pair_coeff * * material copper horizon 2.015\ncompute a all peri/state/atom mises plastic damage",
         }
     }
 }

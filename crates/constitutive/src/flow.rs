@@ -29,8 +29,9 @@ pub struct Returned {
     pub limit: f64,
 }
 
-/// Iterations for a plastic strain: Newton's method needs below ten, halving alone reaches rounding in sixty.
-const MOST_ITERATIONS: usize = 80;
+/// Iterations for a plastic strain: Newton's method needs below ten, halving alone reaches rounding in sixty, and behind strains of 1e-16,
+/// where a power of ε̄ has just begun, in a hundred.
+const MOST_ITERATIONS: usize = 200;
 
 /// Slopes of the residual, in shear moduli, beyond which hardening counts as steep; without hardening it is 3.
 const STEEP: f64 = 6.0;

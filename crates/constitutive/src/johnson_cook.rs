@@ -57,12 +57,13 @@ impl JohnsonCook {
     /// σ_y and its derivative by the increment of strain.
     #[inline]
     pub fn limit(&self, at: Flowing) -> (f64, f64) {
-        let strain = (at.before + at.step).max(LEAST_STRAIN);
+        let strain = (at.before + at.step).max(0.0);
         let power = self.modulus * strain.powf(self.exponent);
-        let held = self.yields + if at.before + at.step > 0.0 { power } else { 0.0 };
+        let held = self.yields + if strain > 0.0 { power } else { 0.0 };
         let (log, slope) = self.reference.log_rate(at.step, at.dt);
         let factor = 1.0 + self.rate * log;
-        let hardens = self.exponent * power / strain * factor + held * self.rate * slope;
+        let strained = strain.max(LEAST_STRAIN);
+        let hardens = self.exponent * self.modulus * strained.powf(self.exponent - 1.0) * factor + held * self.rate * slope;
         (at.thermal * held * factor, at.thermal * hardens)
     }
 

@@ -36,31 +36,37 @@ impl Families {
         par::reduce(view.x.len(), chunk, f64::min).filter(|dt| dt.is_finite())
     }
 
-    /// Calls `f` for each living bond once with its ends and its stiffness as a bond by itself [force/length]: c w V_i V_j/|ξ|, c
-    /// being 18K/(πδ⁴) for state-based laws; under correspondence ω w V_i V_j (9K_i/m_i + 9K_j/m_j).
+    /// Calls `f` for each living bond once with its ends and its stiffness as a bond by itself [force/length]: c w V_i V_j/|ξ|; for
+    /// state-based laws ω w V_i V_j (k_i/m_i + k_j/m_j), k being the larger one of 9K and 15G, which no mode of a body exceeds, and 9K under
+    /// correspondence.
     pub fn each_spring(&self, kinds: &[u16], volumes: &[f64], mut f: impl FnMut([u32; 2], f64)) {
         for i in 0..kinds.len().min(self.family_size.len()) {
             let own = self.stiffness_of(i);
             self.each_apart(i, |b, length| {
                 let j = b.partner as usize;
                 let Some(p) = self.table.get(kinds[i], kinds[j]).filter(|_| b.alive && i < j) else { return };
-                if self.law.kind.correspondence {
+                let factor = 0.5 * (own + self.stiffness_of(j));
+                if !self.law.kind.bond_based {
                     let share =
                         self.law.influence.of(length, p.horizon) * self.weight_of(&b, length, p.horizon);
-                    let stiffness = self.of_modulus(i, kinds[i]) + self.of_modulus(j, kinds[j]);
+                    let stiffness = factor * (self.of_modulus(i, kinds[i]) + self.of_modulus(j, kinds[j]));
                     return f([i as u32, b.partner], share * stiffness * volumes[i] * volumes[j]);
                 }
                 let weight = self.share_of(i, &b, length, p.horizon);
-                let factor = 0.5 * (own + self.stiffness_of(j));
                 f([i as u32, b.partner], factor * p.c * weight * volumes[i] * volumes[j] / length);
             });
         }
     }
 
-    /// 9K/m of a particle.
+    /// k/m of a particle.
     fn of_modulus(&self, i: usize, kind: u16) -> f64 {
-        let m = self.of_site(i, |state| &state.weighted);
-        if m > 0.0 { 9.0 * self.law.of(kind).bulk / m } else { 0.0 }
+        let (m, own) = (self.of_site(i, |state| &state.weighted), self.law.of(kind));
+        let k = if self.law.kind.correspondence {
+            9.0 * own.bulk
+        } else {
+            f64::max(9.0 * own.bulk, 15.0 * own.shear)
+        };
+        if m > 0.0 { k / m } else { 0.0 }
     }
 
     /// The step h/√(K/ρ) of Hartmann et al. (2022, equations 41 and 42), h = V^⅓. `None` without bonds.

@@ -10,7 +10,7 @@ pub static TEMPERATURE: Constant<Vec<f64>> = Constant::new("temperature");
 /// The property of fix property/atom that holds the heat flowing into particles, summed anew in each step.
 pub static HEATFLOW: Constant<Vec<f64>> = Constant::new("heatflow");
 /// What flow of materials has turned into heat that `fix heat/peri` has not taken yet [energy].
-pub static PLASTIC_HEAT: Constant<Vec<f64>> = Constant::new("heat/peri/plastic");
+pub static PLASTIC_HEAT: Constant<Vec<f64>> = Constant::new("plastic heat");
 /// The property that holds the volumes of particles joined by `bond_style bpm/peri`.
 pub static VOLUME_PROPERTY: Constant<Vec<f64>> = Constant::new("d_vfrac");
 

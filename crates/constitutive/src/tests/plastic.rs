@@ -1,7 +1,7 @@
 //! Mises flow against closed forms.
 
 use super::*;
-use crate::{Flowing, Heating, JohnsonCook, Reference};
+use crate::{Flow, Flowing, Heating, JohnsonCook, Reference};
 
 /// Copper's constants of solids: 117 GPa, 0.35, in MPa.
 fn bar(hardening: Hardening) -> Material {
@@ -99,6 +99,22 @@ fn copper_of_johnson_and_cook() {
     let at = |step| Flowing { before: 0.1, step, dt: 1e-6, thermal: 0.8 };
     let slope = (COPPER.limit(at(1e-3 + 1e-8)).0 - COPPER.limit(at(1e-3 - 1e-8)).0) / 2e-8;
     assert!((COPPER.limit(at(1e-3)).1 / slope - 1.0).abs() < 1e-5);
+}
+
+/// A stress just beyond the first yield stress returns, though the slope of ε̄ⁿ is infinite there.
+#[test]
+fn power_laws_begin_at_any_excess() {
+    let hardening = Hardening::JohnsonCook(COPPER);
+    let (flow, elastic) = (Flow::Mises(hardening.clone()), bar(hardening).elastic);
+    let first = COPPER.limit(Flowing { before: 0.0, step: 0.0, dt: 0.0, thermal: 1.0 }).0;
+    for excess in [1e-9, 1e-6, 5e-5, 1e-3, 0.1] {
+        let q = first * (1.0 + excess);
+        let still = Moment { dt: 0.0, ..STEP };
+        let found = flow.returned(&elastic, [q, 0.0], 0.0, &still).unwrap().unwrap();
+        let left = q - 3.0 * elastic.shear * found.step - found.limit;
+        // Some roundings of q.
+        assert!(found.step > 0.0 && left.abs() < 1e-13 * q, "{excess}: {found:?} {left:e}");
+    }
 }
 
 #[test]

@@ -149,7 +149,8 @@ pub(crate) fn settle(
                     let volume = rules.volume[p];
                     let (dt, spacing) = (rules.dt, size.of(volume));
                     let temperature = rules.temperature.get(p).copied();
-                    let moment = Moment { dt, temperature, spacing, advance: settling.advance };
+                    // Materials flow in every evaluation; places that are tried leave no memory.
+                    let moment = Moment { dt, temperature, spacing, advance: settling.keep };
                     let strain = sites.strain.get(site).copied().unwrap_or(0.0);
                     let how = How { moment, strain, frozen: rules.frozen };
                     let own = settled(material, &bonds, past.as_mut(), &how).unwrap_or_else(|why| {

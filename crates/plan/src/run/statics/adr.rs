@@ -46,6 +46,9 @@ impl Balance<'_> {
             if made.force <= self.goal.tol || norm(&f) == 0.0 {
                 return Ok(Some(true));
             }
+            if self.w.settings.stops() {
+                return Ok(Some(false));
+            }
             if !made.force.is_finite() || norm(&f) > RUNS_AWAY * first.max(scale) {
                 return Ok(None);
             }

@@ -99,7 +99,7 @@ impl<'a> Balance<'a> {
     }
 
     /// The time over which bonds flow and relax in an evaluation: what they have not yet seen of the load step.
-    fn time_left(&self) -> f64 {
+    pub fn time_left(&self) -> f64 {
         (self.part[0] - self.part[1]) * self.start.dt()
     }
 

@@ -13,7 +13,7 @@ mod path;
 
 use super::verlet::{cpu_seconds, tick};
 use super::{Made, Outcome, Watch};
-use crate::{Stage, StepPlan};
+use crate::{Stage, StepPlan, Tick};
 pub(super) use balance::Balance;
 pub use bodies::Body;
 pub use ledger::Ledger;
@@ -177,6 +177,7 @@ pub fn statics(
             break;
         }
     }
+    balance.end()?;
     implicit(w, false);
     if let Some(families) = &mut *w.families {
         families.counts_warming = false;
@@ -211,6 +212,14 @@ pub(super) fn begin(plan: &mut StepPlan, w: &mut World) -> Result<()> {
 }
 
 impl Balance<'_> {
+    /// Forces of the last equilibrium with all sums that output requests at some time: lines behind show them.
+    pub(super) fn end(&mut self) -> Result<()> {
+        let mut t = Tick { ending: true, trial: true, dt: self.time_left(), ..tick(self.w, false) };
+        self.plan.request_sums(&mut t);
+        self.w.slots.invalidate();
+        self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force, Stage::PostForce])
+    }
+
     /// Energy and output of the first scene.
     pub(super) fn begin(&mut self) -> Result<()> {
         self.w.facts.insert(*NUMBERS, Numbers { time: self.w.clock.time(), ..Numbers::default() });
