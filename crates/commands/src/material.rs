@@ -309,6 +309,10 @@ impl Act for Define {
     fn needs_particles(&self) -> bool {
         false
     }
+
+    fn leaves_forces(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]
