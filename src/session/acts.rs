@@ -67,6 +67,7 @@ impl Session {
             let forgiving = self.planning() && self.unsure() && act.needs_particles();
             let group = act.makes_group().map(str::to_owned).filter(|_| forgiving);
             let world = &mut self.world;
+            let leaves = act.leaves_forces();
             let outcome = act.apply(&mut ActCx {
                 world,
                 values: &mut values,
@@ -75,7 +76,9 @@ impl Session {
                 then: &mut then,
                 notes: &notes,
             });
-            self.world.touch();
+            if !leaves || outcome.is_err() {
+                self.world.touch();
+            }
             match outcome {
                 Err(e) if forgiving => {
                     group.map(|name| self.world.groups.find_or_add(&name));

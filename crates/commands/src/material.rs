@@ -310,6 +310,10 @@ impl Act for Define {
     fn needs_particles(&self) -> bool {
         false
     }
+
+    fn leaves_forces(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::{Act, CommandStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::{Args, Param, Word};
-use perigrain_styles::common::{self, free_id, setting};
+use perigrain_styles::common::{self, free_id, naming, setting};
 use perigrain_styles::words::{At, Forms, Kind, Nullable, Syntax, Units, Value, Words};
 use perigrain_styles::{BuildCx, Doc, Style, Use, UseKind};
 use perigrain_world::region::{Motion, Shape, Turn, Variable};
@@ -191,7 +191,7 @@ impl CommandStyle for RegionCommand {
         let (outside, motion) = (options.side == Side::Out, motion(options, cx)?);
         let mut region = Region { outside, open, given, motion, ..Region::inside(shape) };
         region.open_holds_all(cx.world.settings.lammps());
-        Ok(setting(move |cx| {
+        Ok(naming(move |cx| {
             log.iter().for_each(|line| cx.print(line));
             cx.world.restored.remove(&format!("region/{name}"));
             cx.world.regions.insert(Key::new(&name), region);

@@ -26,6 +26,11 @@ pub trait Act {
         true
     }
 
+    /// Whether forces and energies of the last run are still those of the scene: it only names something new.
+    fn leaves_forces(&self) -> bool {
+        false
+    }
+
     /// The group it makes if there is none of this name: a check may count on it although nothing acts.
     fn makes_group(&self) -> Option<&str> {
         None

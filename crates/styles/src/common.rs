@@ -324,6 +324,7 @@ struct Do<F> {
     particles: bool,
     settles: Vec<&'static str>,
     group: Option<String>,
+    names: bool,
 }
 
 impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
@@ -333,6 +334,10 @@ impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
 
     fn needs_particles(&self) -> bool {
         self.particles
+    }
+
+    fn leaves_forces(&self) -> bool {
+        self.names
     }
 
     fn makes_group(&self) -> Option<&str> {
@@ -346,7 +351,12 @@ impl<F: FnOnce(&mut ActCx) -> Result<()>> Act for Do<F> {
 
 /// An act on settings, names or the box: it needs no particles and happens in `perigrain check` too.
 pub fn setting(f: impl FnOnce(&mut ActCx) -> Result<()> + 'static) -> Box<dyn Act> {
-    Box::new(Do { f, particles: false, settles: vec![], group: None })
+    Box::new(Do { f, particles: false, settles: vec![], group: None, names: false })
+}
+
+/// An act that gives something new a name: nothing that is there is another for it.
+pub fn naming(f: impl FnOnce(&mut ActCx) -> Result<()> + 'static) -> Box<dyn Act> {
+    Box::new(Do { f, particles: false, settles: vec![], group: None, names: true })
 }
 
 /// An act on particles that settles these facts of the scene.
@@ -381,5 +391,5 @@ pub fn in_group(
     group: Option<String>,
     f: impl FnOnce(&mut ActCx) -> Result<()> + 'static,
 ) -> Box<dyn Act> {
-    Box::new(Do { f, particles: true, settles, group })
+    Box::new(Do { f, particles: true, settles, group, names: false })
 }
