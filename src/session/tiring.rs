@@ -236,6 +236,7 @@ fn block(end: End, all: &Row, ledger: &Ledger) -> String {
     let why = match end {
         End::Cycles => "all cycles have passed",
         End::Equilibria => "as many equilibria as `most` allows",
+        End::Halted => "a fix has halted it",
         End::Ended => "ended early",
     };
     format!(

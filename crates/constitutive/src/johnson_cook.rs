@@ -63,7 +63,8 @@ impl JohnsonCook {
         let (log, slope) = self.reference.log_rate(at.step, at.dt);
         let factor = 1.0 + self.rate * log;
         let strained = strain.max(LEAST_STRAIN);
-        let hardens = self.exponent * self.modulus * strained.powf(self.exponent - 1.0) * factor + held * self.rate * slope;
+        let hardens = self.exponent * self.modulus * strained.powf(self.exponent - 1.0) * factor
+            + held * self.rate * slope;
         (at.thermal * held * factor, at.thermal * hardens)
     }
 

@@ -1,6 +1,6 @@
 //! fix store/state: stores attributes and values of particles.
 
-use super::{Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::Result;
 use perigrain_computes::property_atom::{Getter, find_attribute, read_attribute};
 use perigrain_lang::{Args, ValueRef, Word};
@@ -209,6 +209,10 @@ impl Fix for Declared {
                 Ok(())
             });
         Ok(vec![op.when(when).in_setup(true).boxed()])
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts { at_rest: AtRest::Acts, ..Facts::default() }
     }
 
     fn shape(&self) -> Shape {

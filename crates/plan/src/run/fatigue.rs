@@ -54,6 +54,8 @@ pub enum End {
     Cycles,
     /// So many equilibria as there may be have been found.
     Equilibria,
+    /// A fix has ended it.
+    Halted,
     /// It was ended from outside.
     Ended,
 }
@@ -124,8 +126,9 @@ pub fn fatigue(
         }
     }
     if balance.w.clock.halt != Halt::No {
-        end = End::Ended;
+        end = End::Halted;
     }
+    balance.end()?;
     implicit(w, false);
     let steps = w.clock.step - first;
     (w.clock.last, w.clock.stop) = (w.clock.step, w.clock.step);
