@@ -53,6 +53,8 @@ const BOOK: [&str; 2] = [
      - [Calibrate to a material](howto/material.md)\n\
      - [A crack from a notch](howto/notch.md)\n\
      - [Load a body slowly](howto/slow.md)\n\
+     - [A metal that hardens](howto/metal.md)\n\
+     - [Heat and cracks](howto/heat.md)\n\
      - [A ball strikes a plate](howto/impact.md)\n\
      - [Erosion by a stream of grains](howto/erosion.md)\n\
      - [A laminate of unlike plies](howto/laminate.md)\n\
@@ -76,7 +78,11 @@ const BOOK: [&str; 2] = [
      - [What is computed](theory/README.md)\n\
      - [Bond-based peridynamics](theory/bond-based.md)\n\
      - [State-based peridynamics](theory/state-based.md)\n\
+     - [Correspondence](theory/correspondence.md)\n\
      - [Bonds that flow or soften](theory/softening.md)\n\
+     - [Materials that flow and break](theory/materials.md)\n\
+     - [When bonds break](theory/damage-laws.md)\n\
+     - [Heat in solids](theory/heat.md)\n\
      - [Contacts: along the normal](theory/contacts.md)\n\
      - [Contacts: friction, rolling and twisting](theory/friction.md)\n\
      - [Powders: plastic and adhesive grains](theory/powders.md)\n\

@@ -35,8 +35,11 @@ const EXAMPLES: &[Example] = examples![
     "bicomponent_agglomerate": "in.bicomponent_agglomerate";
     "brittle_glass": "in.brittle_glass";
     "chute": "in.chute";
+    "compact_tension": "in.compact_tension";
+    "concrete_beam": "in.concrete_beam";
     "crack_branching": "in.crack_branching";
     "ct_fracture": "in.ct_fracture" => "rock.nrrd", "make_stack.py";
+    "dcb": "in.dcb";
     "fragmenting_cylinder": "in.fragmenting_cylinder";
     "hertz_half_space": "in.hertz_half_space";
     "hopper": "in.hopper";
@@ -47,7 +50,9 @@ const EXAMPLES: &[Example] = examples![
     "mode_one": "in.mode_one";
     "multi_impact": "in.multi_impact";
     "multiscale_bed": "in.multiscale_bed";
+    "notched_plate": "in.notched_plate";
     "plate_impact": "in.plate_impact", "in.oblique", "in.lammps";
+    "quenched_plate": "in.quenched_plate";
     "rock_cylinder": "in.rock_cylinder";
     "rotating_drum": "in.rotating_drum";
     "rubber_cube": "in.rubber_cube";

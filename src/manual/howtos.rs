@@ -16,7 +16,7 @@ macro_rules! embed {
 /// All of them, by name.
 pub const HOWTOS: &[HowTo] = embed! {
     "agglomerate" "bench" "bodies" "cluster" "cores" "drum" "erosion" "first-crack" "from-python" "heat" "hopper" "impact" "laminate"
-    "long-runs" "material" "movie" "notch" "prompt" "report" "repose" "results" "slow" "sweep" "wrong-deck"
+    "long-runs" "material" "metal" "movie" "notch" "prompt" "report" "repose" "results" "slow" "sweep" "wrong-deck"
 };
 
 impl HowTo {

@@ -370,12 +370,15 @@ fn row(made: &Numbers) -> String {
 /// The results of all load steps.
 fn block(all: &Numbers) -> String {
     let Ledger { work, energy, released, relaxed, lost, error } = all.ledger;
-    // Laws without memory lose nothing, and a body that flows has no error apart from that.
-    let (rest, number) = if lost == 0.0 { ("error", error) } else { ("lost", lost) };
     let short = |x: f64| general(x, 8);
+    // Laws without memory lose nothing.
+    let (rest, lost) = match lost == 0.0 {
+        true => ("error", String::new()),
+        false => ("lost + error", format!("{} + ", short(lost))),
+    };
     format!(
         "Statics:\n  Newton's steps, products with the stiffness = {} {}\n  Bonds broken = {}\n  \
-         Work = change of energy + released by bonds + relaxed + {rest} = {} = {} + {} + {} + {}",
+         Work = change of energy + released by bonds + relaxed + {rest} = {} = {} + {} + {} + {lost}{}",
         all.newton,
         all.products,
         all.broken,
@@ -383,6 +386,6 @@ fn block(all: &Numbers) -> String {
         short(energy),
         short(released),
         short(relaxed),
-        general(number, if lost == 0.0 { 2 } else { 8 })
+        general(error, 2)
     )
 }

@@ -25,7 +25,7 @@ pub struct Tiring {
     /// How bonds tire away from cracks: a cycle takes A1 (ε − E1)^m1 of their life, where ε is beyond E1.
     #[word(keyword, name = "A1 m1 E1", what = "init {}", non_negative, shown = "required")]
     init: Option<[f64; 3]>,
-    /// How they tire near a crack, where one of their ends or a partner of it has lost half of its family: A2 ε^m2.
+    /// How they tire near a crack, where one of their ends or a partner of it has lost a part `cracked` of its family: A2 ε^m2.
     #[word(keyword, name = "A2 m2", what = "grow {}", non_negative, shown = "required")]
     grow: Option<[f64; 2]>,
     /// The number of cycles.
@@ -37,6 +37,9 @@ pub struct Tiring {
     /// Bonds with no more than this part of their life left break together with one whose life ends.
     #[word(keyword, name = "F", what = "the part of a life", shown = "0.02")]
     batch: Option<Fraction>,
+    /// The part of its bonds without which a particle is at a crack: 0.35 to 0.43 are cut by one between two layers.
+    #[word(keyword, name = "D", what = "the part of a family", shown = "0.5")]
+    cracked: Option<Fraction>,
     /// The unbalanced force at an equilibrium, over the larger one of reactions and loads.
     #[word(keyword, name = "E", what = "the tolerance", positive, default = 1e-6)]
     tol: f64,
@@ -83,8 +86,9 @@ impl Tiring {
             adapt: true,
             solver: Solver::Newton,
         };
+        let cracked = self.cracked.map_or(0.5, |part| part.0);
         let batch = self.batch.map_or(0.02, |batch| batch.0);
-        Ok(Goals { rules: Fatigue { init, grow, ratio }, cycles, batch, statics, file: self.file })
+        Ok(Goals { rules: Fatigue { init, grow, ratio, cracked }, cycles, batch, statics, file: self.file })
     }
 }
 

@@ -201,7 +201,7 @@ fn criteria_that_do_not_fit_are_refused() {
         ),
         (
             "variable a atom x\nvariable b bond s+v_a\npair_style peri/pmb\npair_coeff * * material m horizon 3.015\nperi_modify break formula v_b\nrun 2",
-            "write v_a[1] or v_a[2]",
+            "a bond has two ends",
         ),
         (
             "variable b bond T1/300\npair_style peri/pmb\npair_coeff * * material m horizon 3.015\nperi_modify break formula v_b\nrun 2",

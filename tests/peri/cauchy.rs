@@ -154,8 +154,7 @@ fn what_is_refused() {
     let e = refused(
         &base
             .replace("peri/cauchy control node 0.2", "peri/lps")
-            .replace("run 0", "")
-            .replace("compute m", "run 0\ncompute m"),
+            .replace("compute m", "compute own all reduce ave c_s[1]\nrun 0\nprint \"$(c_own)\"\ncompute m"),
     );
     assert!(e.contains("no pair style in force has a stress of its own"), "{e}");
     // Matter that is turned inside out.

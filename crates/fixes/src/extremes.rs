@@ -1,6 +1,6 @@
 //! `fix extremes`: the smallest and largest value that quantities have had so far.
 
-use super::{Fix, FixStyle};
+use super::{AtRest, Facts, Fix, FixStyle};
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{About, Needs, Op, Stage, Tick, When};
@@ -69,6 +69,10 @@ impl Extremes {
 }
 
 impl Fix for Extremes {
+    fn facts(&self, _: &World) -> Facts {
+        Facts { at_rest: AtRest::Acts, ..Facts::default() }
+    }
+
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let when = When::Every(self.every).or(When::First);
         let readings = self.values.iter().map(|p| cx.param(p, Stage::EndOfStep, &when));

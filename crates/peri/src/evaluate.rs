@@ -141,6 +141,7 @@ impl Families {
             warmed: 0.0,
             relaxing: None,
             counts_losses: false,
+            taken: 0.0,
             counts_warming: false,
             breaking_share: None,
             implicit: false,

@@ -58,12 +58,14 @@ impl Families {
     /// the trapezoidal rule. Nothing under LAMMPS' laws, whose forces have no energy.
     pub(super) fn count_heat(&mut self, view: &PeriView, cell: &Cell) {
         self.heat += self.heat_of_broken(view);
+        self.taken = 0.0;
         match self.law.kind.losses {
             _ if self.options.compat_lammps => {}
             Losses::None => {}
             Losses::Sites => {
                 self.heat += self.lost[0];
                 self.released += self.lost[1];
+                self.taken = self.lost[0] + self.lost[1];
             }
             Losses::Flow => {
                 if !self.flowed() {
@@ -80,7 +82,8 @@ impl Families {
                 self.law.lost = true;
                 let before = self.bond_energy(view, cell);
                 self.forget_earlier();
-                self.released += self.bond_energy(view, cell) - before;
+                self.taken = self.bond_energy(view, cell) - before;
+                self.released += self.taken;
                 self.law.lost = false;
             }
             Losses::Relaxation => {

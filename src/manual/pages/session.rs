@@ -81,8 +81,8 @@ pub(super) const STATICS: Entry = (
             and loads, bonds that broke, work and released energy; `compute statics` offers these numbers in rows and variables. \
             Then the log states the work of paths and loads, and where it is: in the energy of the body, released by \
             bonds where they broke, and relaxed: given up on the way from a break to the next equilibrium, which motion would have carried \
-            away. The rest is the error of the load steps, in which forces count with their mean, or what bonds have lost that flow, \
-            soften or relax. Energies are true ones, also where `pe` sums densities.\n\n\
+            away, and lost by bonds that soften and materials that flow or are damaged. The rest is the error of the load steps, in which forces \
+            count with their mean; of bonds that flow or relax (peri/eps, peri/ves, peri/pmb/plastic) it counts as lost. Energies are true ones, also where `pe` sums densities.\n\n\
             Thermo output, dumps, averages and `print` come as in a run of `N` steps. A run behind it begins with velocities of 0. The force \
             on what `fix move` leads is the sum of `fx` over its group (`compute reduce`). Bonds of a \
             `bond_style`, contacts of grains with friction, rigid bodies and fixes that insert or delete are refused by \
@@ -100,7 +100,7 @@ pub(super) const FATIGUE: Entry = (
         text: "The present loads are the upper ones of each cycle; where `statics` has brought them up, this is the place to begin. \
             Each bond has a life λ, 1 at first, of which a cycle takes A ε^m, ε being (1 − R) times its stretch at the upper load, 0 in \
             compression (Silling & Askari 2014). `init` says how, away from cracks, and `grow` where an end of the bond or a partner of one has \
-            lost half of its family; with A1 = 0 no crack begins.\n\n\
+            lost the part `cracked` of its family; with A1 = 0 no crack begins.\n\n\
             The body is balanced as by `statics`; bonds beyond their limit break there one after another. Then as many cycles pass as the \
             bond that tires first bears. It breaks, with those of which `batch` or less is left, and the body is balanced again from \
             where it is, until `N` cycles have passed. `batch 0` breaks one bond at a time, with those that a symmetry maps to it. Each \

@@ -64,6 +64,7 @@ impl Op for Force {
     fn about(&self) -> About {
         let factors = if self.scatter.any() || self.thermal.is_some() { COLUMNS } else { Fields::NONE };
         let formula = if self.formula.is_some() { FORMULAS } else { Fields::NONE };
+        let warms = self.thermal.as_ref().is_some_and(Thermal::warms);
         About {
             level: Level::At(0),
             ..About::new(
@@ -86,7 +87,7 @@ impl Op for Force {
                     )
                     .add(F)
                     .write(LISTS | FAMILIES | SITES | TALLY | FACTS)
-                    .keep(MASS),
+                    .keep(if warms { MASS | COLUMNS } else { MASS }),
             )
         }
     }

@@ -151,6 +151,11 @@ impl Thermal {
         self.by_type.iter().any(|[expansion, _]| *expansion != 0.0)
     }
 
+    /// Whether flow warms particles.
+    pub fn warms(&self) -> bool {
+        self.softens
+    }
+
     /// Gives `fix heat/peri` what flow has turned into heat in the evaluation that has ended.
     pub fn warm(&self, families: &Families, w: &mut World) {
         let n = w.n();

@@ -10,8 +10,6 @@ use crate::families::{Families, Moved, PeriView};
 use crate::law::series::stretch;
 use crate::shares::square;
 
-/// A site of this damage is at the face of a crack.
-const CRACKED: f64 = 0.5;
 /// Lives that end within this part of the same number of cycles end together: those of bonds that a symmetry maps to each other.
 const TOGETHER: f64 = 1e-9;
 
@@ -24,6 +22,8 @@ pub struct Fatigue {
     pub grow: [f64; 2],
     /// R, the lower load over the upper one.
     pub ratio: f64,
+    /// A site of this damage is at the face of a crack.
+    pub cracked: f64,
 }
 
 impl Fatigue {
@@ -53,7 +53,7 @@ impl Families {
     /// Lets as many cycles pass as the bond that tires first bears, `most` at most, at the stretches of the last step that advanced. It
     /// breaks, with those that have no more than `batch` of their lives left by then.
     pub fn tire(&mut self, view: &PeriView, rules: &Fatigue, most: f64, batch: f64) -> Tired {
-        let near = self.near_cracks(view);
+        let near = self.near_cracks(view, rules.cracked);
         let cell = self.cell_before();
         let mut rates = vec![];
         let mut tired = Tired { cycles: most, ..Tired::default() };
@@ -117,11 +117,11 @@ impl Families {
     }
 
     /// Whether a particle or one that it was bonded to at the start is at the face of a crack.
-    fn near_cracks(&self, view: &PeriView) -> Vec<bool> {
+    fn near_cracks(&self, view: &PeriView, cracked: f64) -> Vec<bool> {
         let mut damage = vec![0.0; view.x.len()];
         self.damage_all(view.volume, &mut damage);
         let mut near = vec![false; damage.len()];
-        for (i, _) in damage.iter().enumerate().filter(|(_, d)| **d >= CRACKED) {
+        for (i, _) in damage.iter().enumerate().filter(|(_, d)| **d >= cracked) {
             near[i] = true;
             self.neighbours(i).iter().for_each(|n| near[n.partner as usize] = true);
         }

@@ -112,6 +112,9 @@ pub struct Families {
     /// Count both.
     #[serde(skip)]
     pub counts_losses: bool,
+    /// What softening bonds and sites of materials lost in the last step that advanced, if losses are counted [energy].
+    #[serde(skip)]
+    pub taken: f64,
     /// Count [`Families::warmed`].
     #[serde(skip)]
     pub counts_warming: bool,

@@ -2,22 +2,25 @@
 
 use std::ops::Range;
 
-use crate::families::Families;
 use crate::families::lattice::LatticeBody;
 use crate::families::shares::{ALL, BodyShare, Dues, RowLink, Shares, ranges};
 use crate::families::tiles::TileGraph;
+use crate::families::{Criterion, Families};
 use crate::lattice::tiles::lay_tiles;
 use crate::list::tiles::lay_slabs;
 use crate::shares::list::{followed_slabs, share_of_list};
 
 impl Families {
     /// Deals tiles out to ranks, the same way on each: neighbours in the order of tiles to one rank, as many particles to each as to any
-    /// other. `false` where all of them do all work: no body, bonds that remember, correspondence.
+    /// other. `false` where all of them do all work: no body, bonds that remember, correspondence, bonds that break by other things than their stretch.
     pub fn deal(&mut self, me: usize, ranks: usize) -> bool {
         self.shares = None;
         self.scratch.contact.forget_own();
         let together = self.law.kind.memory() == 0 && !self.law.kind.correspondence;
-        let plain = together && !self.options.compress && !self.options.reunite;
+        let plain = together
+            && self.options.criterion == Criterion::Stretch
+            && !self.options.compress
+            && !self.options.reunite;
         self.lattices.iter_mut().for_each(lay_tiles);
         lay_slabs(&mut self.list);
         let tiles = self.lattices.iter().map(|body| body.tiles.all.len()).sum::<usize>() + self.list.slabs();

@@ -212,7 +212,7 @@ fn ratios_are_those_that_break() {
 #[test]
 fn bonds_tire_by_their_stretch() {
     use perigrain_peri::criteria::fatigue::Fatigue;
-    let rules = Fatigue { init: [1e9, 3.0, 0.0], grow: [1e9, 3.0], ratio: 0.0 };
+    let rules = Fatigue { init: [1e9, 3.0, 0.0], grow: [1e9, 3.0], ratio: 0.0, cracked: 0.5 };
     for layout in [Layout::Auto, Layout::List] {
         let stretched = || {
             let mut s = block("pmb", Criterion::Stretch, layout, [2, 1, 2]);

@@ -38,6 +38,7 @@ syntax match perigrainCommand /\v^\s*\zsdisplace_atoms\S@!/
 syntax match perigrainCommand /\v^\s*\zsdump\S@!/
 syntax match perigrainCommand /\v^\s*\zsdump_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zsecho\S@!/
+syntax match perigrainCommand /\v^\s*\zsfatigue\S@!/
 syntax match perigrainCommand /\v^\s*\zsfix\S@!/
 syntax match perigrainCommand /\v^\s*\zsfix_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zsgroup\S@!/
@@ -113,6 +114,7 @@ syntax match perigrain_pair_style_style /\vgran\/hooke\/history\S@!/ contained
 syntax match perigrain_pair_style_style /\vgranular\S@!/ contained
 syntax match perigrain_pair_style_style /\vhybrid\S@!/ contained
 syntax match perigrain_pair_style_style /\vhybrid\/overlay\S@!/ contained
+syntax match perigrain_pair_style_style /\vperi\/cauchy\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/eps\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/lps\S@!/ contained
 syntax match perigrain_pair_style_style /\vperi\/pmb\S@!/ contained
@@ -165,7 +167,11 @@ syntax match perigrain_fix_style /\vextremes\S@!/ contained
 syntax match perigrain_fix_style /\vfreeze\S@!/ contained
 syntax match perigrain_fix_style /\vgravity\S@!/ contained
 syntax match perigrain_fix_style /\vhalt\S@!/ contained
+syntax match perigrain_fix_style /\vheat\/convect\S@!/ contained
 syntax match perigrain_fix_style /\vheat\/flow\S@!/ contained
+syntax match perigrain_fix_style /\vheat\/flux\S@!/ contained
+syntax match perigrain_fix_style /\vheat\/held\S@!/ contained
+syntax match perigrain_fix_style /\vheat\/peri\S@!/ contained
 syntax match perigrain_fix_style /\vindent\S@!/ contained
 syntax match perigrain_fix_style /\vlangevin\S@!/ contained
 syntax match perigrain_fix_style /\vlineforce\S@!/ contained
@@ -176,6 +182,7 @@ syntax match perigrain_fix_style /\vnve\/bpm\/sphere\S@!/ contained
 syntax match perigrain_fix_style /\vnve\/limit\S@!/ contained
 syntax match perigrain_fix_style /\vnve\/noforce\S@!/ contained
 syntax match perigrain_fix_style /\vnve\/sphere\S@!/ contained
+syntax match perigrain_fix_style /\vperi\/strength\S@!/ contained
 syntax match perigrain_fix_style /\vplaneforce\S@!/ contained
 syntax match perigrain_fix_style /\vpour\S@!/ contained
 syntax match perigrain_fix_style /\vprint\S@!/ contained
@@ -255,6 +262,7 @@ syntax match perigrain_compute_style /\vpe\S@!/ contained
 syntax match perigrain_compute_style /\vpe\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vperi\/defgrad\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vperi\/energy\/atom\S@!/ contained
+syntax match perigrain_compute_style /\vperi\/state\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vperi\/strain\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vperi\/stress\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vplasticity\/atom\S@!/ contained
@@ -268,6 +276,7 @@ syntax match perigrain_compute_style /\vreduce\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vreduce\/region\S@!/ contained
 syntax match perigrain_compute_style /\vrigid\/local\S@!/ contained
 syntax match perigrain_compute_style /\vslice\S@!/ contained
+syntax match perigrain_compute_style /\vstatics\S@!/ contained
 syntax match perigrain_compute_style /\vstress\/atom\S@!/ contained
 syntax match perigrain_compute_style /\vtemp\S@!/ contained
 syntax match perigrain_compute_style /\vtemp\/chunk\S@!/ contained

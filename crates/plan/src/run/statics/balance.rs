@@ -233,9 +233,11 @@ impl<'a> Balance<'a> {
     pub fn settle(&mut self, torn: bool, breaks: bool) -> Result<usize> {
         let t = Tick { dt: self.time_left(), ..self.tick_of_sums(false) };
         let bonds = self.w.bonds.list.len();
+        let mut counted = false;
         if let Some(families) = &mut *self.w.families {
             families.breaking_share = self.goal.breaking.share();
             families.breaking_enabled &= breaks && self.goal.breaking != Breaking::No;
+            counted = std::mem::replace(&mut families.counts_losses, true);
         }
         self.w.slots.invalidate();
         self.plan.run(self.w, &t, &[Stage::PreForce, Stage::Force])?;
@@ -243,6 +245,7 @@ impl<'a> Balance<'a> {
         self.plan.run(self.w, &t, &[Stage::PostForce])?;
         if let Some(families) = &mut *self.w.families {
             families.breaking_share = None;
+            families.counts_losses = counted;
         }
         self.part[1] = self.part[0];
         self.ledger.balanced(self.w, &self.body, torn);

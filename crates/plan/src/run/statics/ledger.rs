@@ -15,7 +15,7 @@ pub struct Ledger {
     pub released: f64,
     /// Energy given up on the way from a break to the next equilibrium, which motion would have carried away.
     pub relaxed: f64,
-    /// Energy that bonds lose which flow, soften or relax, with the error of load steps where bonds do so.
+    /// Energy that bonds and materials lose which soften, flow or relax; of bonds that flow or relax with the error of load steps.
     pub lost: f64,
     /// What work is beyond all these: the error of the mean of forces in load steps, and of equilibria.
     pub error: f64,
@@ -25,7 +25,7 @@ pub struct Ledger {
 #[derive(Debug, Default)]
 pub(in crate::run) struct Books {
     numbers: Ledger,
-    /// Bonds remember: they flow, soften or relax.
+    /// Bonds remember, and what they lose is known as the rest alone: they flow or relax.
     pub remembers: bool,
     first: f64,
     /// The energy at the last equilibrium, or behind the last break.
@@ -105,7 +105,10 @@ impl Books {
         let work = work + heat;
         self.numbers.work += work;
         self.numbers.energy = energy - self.first;
-        let given_up = self.last + work - energy;
+        let taken = w.families.as_ref().filter(|families| families.knows_what_it_takes());
+        let taken = taken.map_or(0.0, |families| families.taken);
+        self.numbers.lost += taken;
+        let given_up = self.last + work - energy - taken;
         let numbers = &mut self.numbers;
         *match (torn, self.remembers) {
             (true, _) => &mut numbers.relaxed,

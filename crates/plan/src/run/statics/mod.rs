@@ -228,7 +228,11 @@ impl Balance<'_> {
         self.ledger.inner(self.w, &self.body);
         self.plan.run(self.w, &t, &[Stage::PostForce, Stage::EndOfStep])?;
         self.ledger.begin(self.w, &self.body);
-        self.ledger.remembers = self.w.families.as_ref().is_some_and(|families| families.remembers());
+        self.ledger.remembers = self
+            .w
+            .families
+            .as_ref()
+            .is_some_and(|families| families.remembers() && !families.knows_what_it_takes());
         self.plan.reset_meters(true);
         self.plan.run(self.w, &t, &[Stage::Output])
     }

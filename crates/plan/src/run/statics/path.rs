@@ -139,9 +139,11 @@ impl Balance<'_> {
             return Ok(at);
         }
         let (mut values, mut side) = ([low.1 - goal, high.1 - goal], 0);
+        let mut lost = false;
         for _ in 0..SOLUTIONS {
             let part = (low.0 * values[1] - high.0 * values[0]) / (values[1] - values[0]);
             if !self.reach((at, part), made)? {
+                lost = true;
                 break;
             }
             at = part;
@@ -158,8 +160,8 @@ impl Balance<'_> {
             }
             side = if above { 1 } else { -1 };
         }
-        // The last place may be one at which nothing breaks.
-        if at != high.0 && !self.reach((at, high.0), made)? {
+        // The last place may be one at which nothing breaks, and the clock may stand where no balance was found.
+        if (at != high.0 || lost) && !self.reach((at, high.0), made)? {
             return Err(self.stuck(made));
         }
         Ok(high.0)
