@@ -184,3 +184,27 @@ fn lines_that_lack_something_are_refused() {
         assert!(!well && text.contains(wanted), "{line}: {text}");
     }
 }
+
+/// A crack that was cut between two layers takes less than half of the families beside it: it grows by `grow` where `cracked` says so.
+#[test]
+fn a_crack_that_was_cut_grows_where_less_of_a_family_counts() {
+    let cut = "region cut block INF INF INF 0.0029 INF INF units box\nperi_crack plane 0.0065 0 0 1 0 0 region cut units box\nstatics 1\n";
+    let whole = BAR.replace("delete_atoms region notch\n", "").replace("statics 1\n", cut);
+    let broken = |words: &str| {
+        let line = format!("fatigue init 0 4 0 grow 1e10 4 cycles 1e30 most 4 {words} file lives\n");
+        let deck = whole.replace("LAW", PMB) + &line;
+        lives(&deck, &[]).0.last().unwrap()[3]
+    };
+    assert_eq!(broken(""), 0.0);
+    assert!(broken("cracked 0.3") > 0.0);
+}
+
+/// What a fix halts with `error continue` ends as other lines do: the deck continues.
+#[test]
+fn a_line_that_a_fix_halts_is_not_the_last_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let halted = "variable n equal step\nfix h all halt 1 v_n >= 3 error continue message no\n\
+                  fatigue init 1e9 4 0 grow 1e10 4 cycles 1e30 most 8\nprint \"behind $(step)\"\n";
+    let (text, well) = run_in(folder.path(), &(BAR.replace("LAW", PMB) + halted), &[]);
+    assert!(well && text.contains("behind 3"), "{text}");
+}

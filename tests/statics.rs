@@ -292,3 +292,23 @@ fn a_restart_between_load_steps_leaves_the_same_bits() {
     };
     assert!(places(&run(&whole)) == places(&run(&again)));
 }
+
+/// Bonds that soften: what they lose is known, so that the ledger shows its error; each line takes the time that it says, also where a
+/// load step is cut; and what is lost counts as fracture in the ledger of a run.
+#[test]
+fn what_softens_is_booked() {
+    let law = "pair_style peri/pmb/softening\npair_coeff 1 1 3.05e21 3.0151e-3 1.0e-4 12";
+    let lines = "compute s all statics\ncompute e all energy/ledger\nthermo_style custom step time pe c_s[7] c_s[8] c_s[9] c_s[10] c_s[12]\n\
+                 thermo_modify format float %23.17g\nstatics 60 time 3\nrun 0\nprint \"taken $(c_e[7]) time $(time)\"";
+    let text = run(&deck(law, "1.0", lines));
+    let row = last_row(&text);
+    let [work, energy, released, relaxed, lost] = row[3..8] else { panic!("{row:?}") };
+    let error = work - energy - released - relaxed - lost;
+    // The mean of forces over load steps of a thirtieth of the peak's strain: of second order.
+    assert!(lost > 0.05 * work && error.abs() < 1e-2 * work, "{text}");
+    let taken = printed(&text, "taken ");
+    assert!(
+        (taken[0] - released - lost).abs() < 1e-6 * work && (taken[1] - 3.0).abs() < 1e-9,
+        "{taken:?} {released} {lost}"
+    );
+}

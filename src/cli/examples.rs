@@ -59,6 +59,8 @@ const EXAMPLES: &[Example] = examples![
     "rubber_sand_pack": "in.rubber_sand_pack";
     "shear_cell": "in.shear_cell";
     "squeezed_block": "in.squeezed_block";
+    "taylor_bar": "in.taylor_bar";
+    "thick_sphere": "in.thick_sphere";
 ];
 
 /// The words of `examples`.

@@ -122,12 +122,10 @@ impl Families {
     /// last evaluation.
     pub fn warming(&mut self, view: &PeriView, [old, new]: [&[f64]; 2]) -> f64 {
         let cell = self.cell(view);
-        self.law.frozen = true;
         let [before, after] = [old, new].map(|strain| {
             self.warm(strain);
             self.living_energy(view, &cell)
         });
-        self.law.frozen = false;
         after - before
     }
 
@@ -207,12 +205,15 @@ impl Families {
         std::mem::swap(&mut self.list.alive, listed);
     }
 
-    /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too.
+    /// The energy of all bonds that live at the places of the last force evaluation, dilatations being theirs too. Materials do not flow
+    /// for it: what they take is counted where they do.
     fn living_energy(&mut self, view: &PeriView, cell: &Cell) -> f64 {
         if !self.law.kind.bond_based || self.heated() {
             let mut aside = vec![[0.0; 3]; view.x.len()];
+            self.law.frozen = true;
             self.sweep_lattices(view, &mut aside, (false, true), None);
             self.sweep_list(view, &mut aside, (false, true), (cell, None));
+            self.law.frozen = false;
         }
         self.bond_energy(view, cell)
     }

@@ -78,7 +78,7 @@ pub(super) const STATICS: Entry = (
             (snap-back), and no energy is given up but the little that one bond leaves. `N` is the most breaks, `T`/`N` the first guess \
             of a time; paths and loads should be linear in time. `until 0.2` ends where the load has fallen to 0.2 of its peak.\n\n\
             A table at the end has, for each load step, Newton's steps, products, the unbalanced force over reactions \
-            and loads, bonds that broke, work and released energy; `compute statics` offers these numbers in rows and variables. \
+            and loads, bonds that broke, work and released energy; `compute statics` offers these numbers in rows and variables.\n\n\
             Then the log states the work of paths and loads, and where it is: in the energy of the body, released by \
             bonds where they broke, and relaxed: given up on the way from a break to the next equilibrium, which motion would have carried \
             away, and lost by bonds that soften and materials that flow or are damaged. The rest is the error of the load steps, in which forces \

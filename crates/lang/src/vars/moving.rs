@@ -81,7 +81,8 @@ impl Vars {
     /// `next`: advances all of `names`; returns whether one of them has no further value (it is then deleted).
     ///
     /// With `maybe` only a run determines whether the line is reached: nothing advances, and positions are unknown. With `keep`
-    /// only a run determines whether variables reach their last value: none is deleted, for lines that read them.
+    /// only a run determines whether variables reach their last value: none is deleted, for lines that read them. Nor are those whose
+    /// values only a run determines.
     pub fn next(&mut self, names: &[Word], maybe: bool, keep: bool) -> Result<Next> {
         let family = |k: Kind| if k == Kind::Uloop { Kind::Universe } else { k };
         let mut first = None;
@@ -113,6 +114,7 @@ impl Vars {
             let Some(v) = Arc::make_mut(&mut self.table).get_mut(&name.text) else { continue };
             self.state = self.state.wrapping_sub(v.state());
             v.set = self.sets;
+            let sure = v.turns_known();
             let more = match turn {
                 Some(turn) => v.go_to(turn),
                 None => v.turns_known() && v.advance(),
@@ -126,7 +128,7 @@ impl Vars {
                 continue;
             }
             exhausted = true;
-            match keep {
+            match keep || !sure {
                 true => self.set_adrift(&name.text),
                 false => self.remove(&name.text),
             }
