@@ -14,8 +14,8 @@ const MANY: usize = 100;
 impl Session {
     /// A warning where the time step is beyond what the pair style can vouch for, or what bonds stand.
     pub(super) fn check_step(&self, span: Span, found: &mut Diagnostics) {
-        // A fix that chooses the step by itself knows better.
-        if self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
+        // A fix that chooses the step by itself knows better, and so does a run of a step that is computed.
+        if self.world.unseen.length || self.graph.fixes.iter().any(|f| f.style.starts_with("dt/")) {
             return;
         }
         let to_come = self.to_come();

@@ -123,8 +123,9 @@ fn the_ledger_balances_while_metal_flows_and_breaks() {
         }
         // 4.42 J at first. The error is of second order in the step; where bonds break, what breaks differs between the steps.
         let (long, short) = (&off[0], &off[1]);
-        assert!(long[0] < 1e-3 * 4.42 && short[0] < 0.35 * long[0], "{words} {coeff}: {off:?}");
         let (flows, breaks) = (words.contains("yield"), coeff.contains("s00"));
+        let falls = short[0] < 0.35 * long[0] || (flows && breaks);
+        assert!(long[0] < 1e-3 * 4.42 && short[0] < 1e-3 * 4.42 && falls, "{words} {coeff}: {off:?}");
         assert!((short[1] > 1.0) == flows && (short[2] > 0.1) == breaks, "{words} {coeff}: {off:?}");
     }
 }
@@ -138,8 +139,8 @@ fn load_steps_find_equilibria_of_elastic_and_plastic_solids() {
                     fix h hi move linear 2e-5 0 0 units box\ntimestep 1\n";
         let text = run(
             &format!(
-                "{deck}{held}compute s all statics\ncompute most all reduce max c_q[1] c_q[2]\nthermo_style custom step c_s[4]\n\
-                 statics 4\nprint \"end $(c_s[4]) $(c_s[7]) $(c_s[7]-c_s[8]-c_s[9]-c_s[10]-c_s[12]) $(c_s[12]) $(c_most[1]) $(c_most[2])\"\n"
+                "{deck}{held}compute st all statics\ncompute most all reduce max c_q[1] c_q[2]\nthermo_style custom step c_st[4]\n\
+                 statics 4\nprint \"end $(c_st[4]) $(c_st[7]) $(c_st[7]-c_st[8]-c_st[9]-c_st[10]-c_st[12]) $(c_st[12]) $(c_most[1]) $(c_most[2])\"\n"
             ),
             false,
         );

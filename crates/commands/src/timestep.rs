@@ -35,13 +35,14 @@ struct Line {
 
 impl CommandStyle for Timestep {
     fn parse(&self, a: &mut Args, cx: &BuildCx) -> Result<Box<dyn Act>> {
-        let Line { dt: At { value: dt, span, .. } } = read(a, cx)?;
+        let Line { dt: At { value: dt, span, unknown, .. } } = read(a, cx)?;
         if dt <= 0.0 {
             let text = format!("a time step of {dt} leads nowhere, or back");
             cx.note(Diagnostic::warning(Code::SUSPICIOUS, span, text));
         }
         Ok(setting(move |cx| {
             cx.world.clock.set_dt(dt);
+            cx.world.unseen.length = unknown;
             Ok(())
         }))
     }

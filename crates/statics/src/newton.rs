@@ -5,7 +5,7 @@
 //! tangent, which is not symmetric, and GMRES instead of conjugate gradients, a slipping agglomerate took as
 //! many steps and more time.)
 
-use super::coarse::{Coarse, Parts};
+use super::coarse::{Coarse, Parts, Sizes};
 use super::contacts::{Contacts, Past, Touching};
 use super::dsm::MOST;
 use super::network::Network;
@@ -178,7 +178,8 @@ impl Body<'_> {
         };
         let grounds: Vec<_> = walls.iter().map(|(particle, k)| (*particle, self.walls.axis, *k)).collect();
         let touching = Touching { contacts: self.contacts, springs: &springs };
-        let make = || Coarse::new(&Parts { ties: &[network, &touching], grounds: &grounds }, &blocks);
+        let make =
+            || Coarse::new(&Parts { ties: &[network, &touching], grounds: &grounds }, &blocks, Sizes::NEXT);
         let mut by = match limit {
             // As in the paper.
             Err(_) => Preconditioner::plain(&blocks),

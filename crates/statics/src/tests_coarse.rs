@@ -1,6 +1,6 @@
 //! Coarse levels: their guarantees for any body, and the reduction of steps.
 
-use super::coarse::{Coarse, Parts};
+use super::coarse::{Coarse, Parts, Sizes};
 use super::contact::Contact;
 use super::contacts::{Contacts, Touching};
 use super::ends::{ROTATIONS, WHOLE};
@@ -62,7 +62,7 @@ fn bodies() -> Vec<Case> {
 fn symmetric_and_positive() {
     for (which, Case { network, held, grounds }) in bodies().into_iter().enumerate() {
         let blocks = Blocks::of_network(&network, &held);
-        let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &grounds }, &blocks);
+        let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &grounds }, &blocks, Sizes::NEXT);
         let free = |r: Vec<Six>| r.iter().enumerate().map(|(k, r)| blocks.free(k, r)).collect::<Vec<_>>();
         let [a, b] = [7, 8].map(|seed| free(noise(network.particles, seed)));
         let [x, y] = [&a, &b].map(|r| applied(&coarse, &blocks, r));
@@ -83,7 +83,7 @@ fn one_level_is_galerkins() {
     let held: Vec<u8> = (0..n).map(|k| [0, 0, WHOLE, 0b100, 0][k % 5]).collect();
     let blocks = Blocks::of_network(&network, &held);
     let grounds = [(4, 0, 2e5), (11, 1, 1e5)];
-    let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &grounds }, &blocks);
+    let coarse = Coarse::new(&Parts { ties: &[&network], grounds: &grounds }, &blocks, Sizes::NEXT);
     let free = |rows: Vec<Six>| rows.iter().enumerate().map(|(k, r)| blocks.free(k, r)).collect::<Vec<_>>();
     let r = free(noise(n, 3));
     let half = |z: Vec<Six>| z.iter().map(|z| z.map(|a| 0.5 * a)).collect::<Vec<Six>>();
@@ -168,7 +168,7 @@ fn contacts_tie_clusters() {
         contacts.add_blocks(&springs, &mut packed);
         let blocks = Blocks::new(&packed, &held);
         let touching = Touching { contacts: &contacts, springs: &springs };
-        let coarse = Coarse::new(&Parts { ties: &[&network, &touching], grounds: &[] }, &blocks);
+        let coarse = Coarse::new(&Parts { ties: &[&network, &touching], grounds: &[] }, &blocks, Sizes::NEXT);
         let mut load = vec![[0.0; 6]; n];
         load[n - 1][1] = 1e-3;
         let moved = length(applied(&coarse, &blocks, &load)[n - 1][..3].try_into().unwrap());

@@ -9,6 +9,8 @@ pub struct Unseen {
     pub step: bool,
     /// The time and the length of a step.
     pub time: bool,
+    /// The length of a step that the deck has computed from what a run determines.
+    pub length: bool,
     /// Place and lengths of the box.
     pub space: bool,
     /// The particles are not even those with which a run would begin: a line that makes or changes them depends on a value that

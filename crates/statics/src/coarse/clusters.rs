@@ -8,11 +8,6 @@ use perigrain_base::par;
 /// The cluster index of fixed nodes.
 pub const NONE: u32 = u32::MAX;
 
-/// Number of neighbour rings around the first node of a cluster. With one ring there are three times as many
-/// clusters and a fifth fewer steps, and about the same total time including the setup; two rings need less
-/// memory, which matters for 8·10⁶ bonds.
-const RINGS: usize = 2;
-
 /// Clusters of nodes, which are particles or clusters.
 pub struct Clusters {
     /// By node; [`NONE`] for fixed nodes.
@@ -25,15 +20,16 @@ pub struct Clusters {
 }
 
 impl Clusters {
-    /// `neighbours(node, take)` passes the neighbours of a node to `take`, with the vectors to them [length].
+    /// `rings` of neighbours make a cluster; `neighbours(node, take)` passes the neighbours of a node to `take`, with the vectors to them [length].
     pub fn new(
         nodes: usize,
+        rings: usize,
         stands: impl Fn(usize) -> bool,
         neighbours: impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
     ) -> Self {
         let mut out =
             Self { of: vec![NONE; nodes], offset: vec![[0.0; 3]; nodes], members: Lists::default() };
-        let count = out.begin(&stands, &neighbours);
+        let count = out.begin(rings, &stands, &neighbours);
         out.join(&stands, &neighbours);
         let held = out.of.iter().enumerate().filter(|(_, cluster)| **cluster != NONE);
         out.members = Lists::new(count as usize, held.map(|(k, cluster)| (*cluster, k as u32)));
@@ -45,6 +41,7 @@ impl Clusters {
     /// are relative to that node. Returns the number of clusters.
     fn begin(
         &mut self,
+        rings: usize,
         stands: &impl Fn(usize) -> bool,
         neighbours: &impl Fn(usize, &mut dyn FnMut(usize, Vec3)),
     ) -> u32 {
@@ -57,7 +54,7 @@ impl Clusters {
             }
             self.of[k] = count;
             let mut ring = vec![k];
-            for _ in 0..RINGS {
+            for _ in 0..rings {
                 let mut next = vec![];
                 for i in ring {
                     let x = self.offset(i);

@@ -1,12 +1,12 @@
 //! Symmetric matrices of 6 × 6 blocks, by rows: resistance between rigid clusters.
 
-use super::Parts;
 use super::clusters::{Clusters, NONE, carried, handed};
+use super::{Parts, Sizes};
 use crate::ends::WHOLE;
 use crate::pairs::{Lists, Ties};
 use crate::precond::{Blocks, Factor};
 use crate::six::{Matrix6, Six, full, packed, unit};
-use perigrain_base::math::vec3::{Vec3, add, scale, sub};
+use perigrain_base::math::vec3::{Vec3, add, length, scale, sub};
 use perigrain_base::par;
 
 /// A matrix.
@@ -83,11 +83,11 @@ impl Matrix {
     }
 
     /// Clusters of its nodes.
-    pub fn clusters(&self) -> Clusters {
+    pub fn clusters(&self, rings: usize) -> Clusters {
         let neighbours = |k: usize, take: &mut dyn FnMut(usize, Vec3)| {
             self.0[k].beside.iter().for_each(|b| take(b.column as usize, b.vector));
         };
-        Clusters::new(self.rows(), |_| false, neighbours)
+        Clusters::new(self.rows(), rings, |_| false, neighbours)
     }
 
     /// PᵀA P for the rigid motions of clusters.
@@ -128,14 +128,21 @@ fn put(sum: &mut Matrix6, m: &Matrix6, [x, y]: [Vec3; 2]) {
 }
 
 /// Clusters of particles and PᵀK P.
-pub fn of_particles(parts: &Parts, blocks: &Blocks) -> (Clusters, Matrix) {
+pub fn of_particles(parts: &Parts, blocks: &Blocks, sizes: Sizes) -> (Clusters, Matrix) {
     let particles = blocks.len();
     let of_ends: Vec<Ends> = parts.ties.iter().map(|ties| Ends::new(*ties, particles)).collect();
+    let shortest = |ties: &dyn Ties| {
+        (0..ties.ends().len()).map(|k| length(ties.vector(k))).fold(f64::INFINITY, f64::min)
+    };
+    let reach = match sizes.reach.is_finite() {
+        true => sizes.reach * parts.ties.iter().map(|ties| shortest(*ties)).fold(f64::INFINITY, f64::min),
+        false => f64::INFINITY,
+    };
     let of = |i: usize| of_ends.iter().flat_map(move |ends| ends.of(i));
     let neighbours = |i: usize, take: &mut dyn FnMut(usize, Vec3)| {
-        of(i).for_each(|tie| take(tie.other, tie.vector));
+        of(i).filter(|tie| length(tie.vector) <= reach).for_each(|tie| take(tie.other, tie.vector));
     };
-    let clusters = Clusters::new(particles, |k| blocks.held(k) == WHOLE, neighbours);
+    let clusters = Clusters::new(particles, sizes.rings, |k| blocks.held(k) == WHOLE, neighbours);
     let grounds = Lists::new(
         particles,
         parts.grounds.iter().enumerate().map(|(k, (particle, ..))| (*particle, k as u32)),

@@ -326,7 +326,7 @@ impl<'a> Balance<'a> {
     ) -> Result<()> {
         let (size, goal) = (SMALL * self.body.size, forcing * norm(load));
         let (blocks, network) = (std::mem::take(&mut self.blocks), std::mem::take(&mut self.body.network));
-        let parts_of = |blocks: &Blocks| Coarse::of_network(&network, blocks);
+        let parts_of = |blocks: &Blocks| Coarse::of_families(&network, blocks);
         // Clusters from the first step on: load steps after load steps use them.
         let coarse = self.coarse.take().or_else(|| (network.bonds() > 0).then(|| parts_of(&blocks)));
         let me = RefCell::new(&mut *self);

@@ -124,6 +124,10 @@ pub struct Scene {
     pub ratio: fn(&World) -> f64,
 }
 
+/// The springs of living bonds are found anew between load steps where more bonds than this have broken since: each makes a further step or two of
+/// conjugate gradients, and springs with their clusters take as long as some thirty.
+const STALE: usize = 12;
+
 /// Takes note of a load step.
 pub type Note<'a> = &'a mut dyn FnMut(&Numbers);
 
@@ -159,7 +163,7 @@ pub fn statics(
         let mut made = par::inside(|| balance.load_step())?;
         made.seconds = start.elapsed().as_secs_f64();
         note(&made);
-        balance.renew(0);
+        balance.renew(STALE);
         all = Numbers {
             newton: all.newton + made.newton,
             products: all.products + made.products,
