@@ -113,8 +113,16 @@ fn take(x: &mut [f64], part: f64, a: &[f64]) {
     x.iter_mut().zip(a).for_each(|(x, a)| *x -= part * a);
 }
 
+/// Eight sums at a time: one alone would wait for each addition, four times as long.
 fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let ((a, rest), (b, last)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        (0..8).for_each(|k| sums[k] += a[k] * b[k]);
+    }
+    let tail: f64 = rest.iter().zip(last).map(|(a, b)| a * b).sum();
+    let [p, q, r, s, t, u, v, w] = sums;
+    ((p + q) + (r + s)) + ((t + u) + (v + w)) + tail
 }
 
 #[cfg(test)]
