@@ -126,7 +126,7 @@ fn the_ledger_balances_while_metal_flows_and_breaks() {
         let (flows, breaks) = (words.contains("yield"), coeff.contains("s00"));
         let falls = short[0] < 0.35 * long[0] || (flows && breaks);
         assert!(long[0] < 1e-3 * 4.42 && short[0] < 1e-3 * 4.42 && falls, "{words} {coeff}: {off:?}");
-        assert!((short[1] > 1.0) == flows && (short[2] > 0.1) == breaks, "{words} {coeff}: {off:?}");
+        assert!((short[1] > 1.0) == flows && (short[2] > 0.05) == breaks, "{words} {coeff}: {off:?}");
     }
 }
 
@@ -140,13 +140,13 @@ fn load_steps_find_equilibria_of_elastic_and_plastic_solids() {
         let text = run(
             &format!(
                 "{deck}{held}compute st all statics\ncompute most all reduce max c_q[1] c_q[2]\nthermo_style custom step c_st[4]\n\
-                 statics 4\nprint \"end $(c_st[4]) $(c_st[7]) $(c_st[7]-c_st[8]-c_st[9]-c_st[10]-c_st[12]) $(c_st[12]) $(c_most[1]) $(c_most[2])\"\n"
+                 statics 16 time 4\nprint \"end $(c_st[4]) $(c_st[7]) $(c_st[7]-c_st[8]-c_st[9]-c_st[10]-c_st[12]) $(c_st[12]) $(c_most[1]) $(c_most[2])\"\n"
             ),
             false,
         );
         let [force, work, error, lost, mises, plastic] = printed(&text, "end ")[..] else { panic!("{text}") };
-        // Balanced; what the mean of forces over load steps of 5e-3 leaves is of second order.
-        assert!(force <= 1e-6 && work > 0.0 && error.abs() < 2e-2 * work, "{text}");
+        // Balanced; what the mean of forces over load steps of 1e-3 leaves is of second order: 3 % of four steps.
+        assert!(force <= 1e-6 && work > 0.0 && error.abs() < 5e-3 * work, "{text}");
         match words.is_empty() {
             true => assert!(lost == 0.0 && plastic == 0.0 && mises > 1e9, "{text}"),
             // Where it has flowed most the stress is on the yield surface.
