@@ -57,11 +57,7 @@ fn last_row(deck: &str, words: &[&str]) -> Vec<f64> {
     let (text, well) = run_with(deck, words);
     assert!(well, "{text}");
     let number = |line: &str| line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>().ok();
-    text.lines()
-        .filter_map(number)
-        .filter(|row| row.len() == 9)
-        .next_back()
-        .unwrap_or_else(|| panic!("{text}"))
+    text.lines().filter_map(number).rfind(|row: &Vec<f64>| row.len() == 9).unwrap_or_else(|| panic!("{text}"))
 }
 
 /// Layers as deep as bonds reach are held at 1 from x = ±1 on: the middle follows 1 − Σ (4/π) (−1)^n/(2n + 1) exp(−(2n + 1)² π²/4 Fo).
@@ -94,7 +90,7 @@ fn a_slab_in_a_fluid() {
     let fixes = "set group all temperature 1.0\nfix h all heat/peri\n\
                  fix b lo heat/convect 1 0 area $(0.3^2)\nfix c hi heat/convect 1 0 area $(0.3^2)";
     for run in ["timestep 5e-4\nrun 2000", "timestep 1e-2\nrun 100"] {
-        let row = last_row(&deck(&fixes, run), &[]);
+        let row = last_row(&deck(fixes, run), &[]);
         // The film acts at the middles of the outermost layer, half a spacing below the surface: 2 % here, of first order.
         assert!((row[2] / 0.533861 - 1.0).abs() < 0.02, "{run}: {}", row[2]);
         assert!((row[3] - 0.18 - row[6]).abs() < 1e-9 * row[3], "{row:?}");

@@ -315,7 +315,7 @@ impl Compute for Declared {
         let mut reads = X | FAMILIES | VOLUME | MASK | BOX | KIND | X0;
         if matches!(self.measure, Measure::Own) {
             need_stress(&self.id, self.span, cx)?;
-            reads = reads | SITES;
+            reads |= SITES;
         }
         let (bit, measure, width) = (self.group.bit(), self.measure, self.measure.columns());
         let torn = self.torn;

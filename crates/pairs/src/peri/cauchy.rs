@@ -63,7 +63,8 @@ impl PairStyle for PeriCauchy {
         let mut solid = solid(self.name(), law::CAUCHY, cx)?;
         solid.law.control = CONTROL;
         if let Some(Control::Node { factor }) = line.control {
-            if !factor.unknown && !(factor.value > 0.0 && factor.value <= MOST) {
+            let right = factor.value > 0.0 && factor.value <= MOST;
+            if !(factor.unknown || right) {
                 let text = format!(
                     "the factor of node control must be above 0 and at most {MOST}: without control some motions have no energy, \
                      with more of it shear waves are too fast"

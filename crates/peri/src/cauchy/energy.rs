@@ -20,6 +20,9 @@ use perigrain_constitutive::Mat3;
 /// One bond of a site: xi, eta, and ω w V of the other end.
 type Bond = ([f64; 3], [f64; 3], f64);
 
+/// Calls a function for each bond of a site.
+type Each<'a> = &'a (dyn Fn(usize, &mut dyn FnMut(Bond)) + Sync);
+
 /// Adds energy and virial of all sites as of the last evaluation.
 pub(crate) fn tally(families: &mut Families, view: &PeriView, cell: &Cell, t: &mut PeriTally) {
     let mut rows = std::mem::take(&mut families.scratch.rows);
@@ -75,7 +78,7 @@ fn sites(
     families: &Families,
     (state, particle, pad): (&SiteState, &[u32], usize),
     (view, places): (&PeriView, Places),
-    (each, rows): (&(dyn Fn(usize, &mut dyn FnMut(Bond)) + Sync), &mut Vec<Sums>),
+    (each, rows): (Each, &mut Vec<Sums>),
     t: &mut PeriTally,
 ) {
     let own = &state.continuum;

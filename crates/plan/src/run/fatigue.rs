@@ -26,6 +26,9 @@ pub struct Tired {
 /// Lets as many cycles pass as the bond that tires first bears, but no more than these.
 pub type Tire<'a> = &'a mut dyn FnMut(&mut World, f64) -> Result<Tired>;
 
+/// Takes note of an equilibrium.
+pub type Note<'a> = &'a mut dyn FnMut(&Row) -> Result<()>;
+
 /// How it stands behind an equilibrium and the cycles that follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
@@ -71,7 +74,7 @@ pub fn fatigue(
     watch: &mut dyn Watch,
     (body, scene): (impl FnOnce(&World) -> Result<Body>, Scene),
     (goal, cycles): (statics::Goal, f64),
-    (tire, note): (Tire, &mut dyn FnMut(&Row) -> Result<()>),
+    (tire, note): (Tire, Note),
 ) -> Result<(Outcome, End, Row, Ledger)> {
     let (first, clock, cpu) = (w.clock.step, Instant::now(), cpu_seconds());
     begin(plan, w)?;

@@ -247,11 +247,11 @@ impl Balance<'_> {
         (self.start, self.part) = (path::Start::of(self.w), [0.0; 2]);
         match self.goal.control {
             Control::Load => {
-                self.to_the_end(&mut made)?;
+                self.reach_end(&mut made)?;
                 self.finish(&mut made)?;
             }
             Control::Damage => {
-                made.broken = self.to_the_limit(&mut made)?;
+                made.broken = self.reach_limit(&mut made)?;
                 self.finish(&mut made)?;
                 if made.broken > 0 {
                     self.rebalance(&mut made)?;

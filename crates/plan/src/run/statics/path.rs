@@ -95,7 +95,7 @@ impl Balance<'_> {
     }
 
     /// The whole load step, in as many parts as it takes; the first bond of it that breaks alone does so where it is at its limit.
-    pub fn to_the_end(&mut self, made: &mut Numbers) -> Result<()> {
+    pub fn reach_end(&mut self, made: &mut Numbers) -> Result<()> {
         let (mut done, mut size, mut failed) = (0.0, 1.0f64, 0);
         let mut seeks = self.goal.breaking == Breaking::One && self.w.families.is_some();
         while done < 1.0 {
@@ -206,7 +206,7 @@ impl Balance<'_> {
 
     /// Moves the load, forwards or back, to where the bond with the largest load ratio is at its limit, and breaks it. How many broke:
     /// none if no load within reach of this load step does it.
-    pub fn to_the_limit(&mut self, made: &mut Numbers) -> Result<usize> {
+    pub fn reach_limit(&mut self, made: &mut Numbers) -> Result<usize> {
         let goal = 1.0 + 0.5 * ABOVE;
         let (mut at, mut ratio) = (0.0, self.ratio.0);
         let mut next = match self.ratio.1 > 0.0 {
