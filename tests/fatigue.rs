@@ -178,6 +178,7 @@ fn lines_that_lack_something_are_refused() {
         ("fatigue init -1 3 0 grow 1 3 cycles 10", "init A1"),
         ("fatigue init 1 3 0 grow 1 3 cycles 10 batch 2", "between 0 and 1"),
         ("fatigue init 1 3 0 grow 1 3 cycles 10 loads 1 2", "loads"),
+        ("fatigue init 1 3 0 grow 1 3 cycles 10 most 1", "the most equilibria"),
         ("fix h all langevin 1 1 1 1\nfatigue init 1 3 0 grow 1 3 cycles 10", "fix langevin cannot act"),
     ] {
         let (text, well) = run_in(folder.path(), &ROW.replace("PULL", "1e-6").replace("FATIGUE", line), &[]);

@@ -174,3 +174,17 @@ fn what_is_refused() {
     );
     assert!(!well && text.contains("needs particles with temperature"), "{text}");
 }
+
+/// What is held is at its value from the first step on, however the step is made: as if it had been set before, but for the heat that this takes.
+#[test]
+fn what_is_held_jumps_at_once() {
+    for words in ["implicit no", "implicit yes theta 1", "implicit yes theta 0.5"] {
+        let fixes = format!("fix h all heat/peri {words}\nfix b ends heat/held 1");
+        let run = "timestep 5e-3\nrun 20";
+        let jumps = last_row(&deck(&fixes, run), &[]);
+        let set = last_row(&deck(&format!("set group ends temperature 1\n{fixes}"), run), &[]);
+        // Linear systems are solved to 1e-10.
+        assert!(jumps[2] > 0.01 && (jumps[2] - set[2]).abs() < 1e-9, "{words}: {jumps:?} {set:?}");
+        assert!((jumps[3] - jumps[4]).abs() < 1e-9 * jumps[3], "{words}: {jumps:?}");
+    }
+}

@@ -312,3 +312,28 @@ fn what_softens_is_booked() {
         "{taken:?} {released} {lost}"
     );
 }
+
+/// Bonds that are cut between two lines of load steps leave the body out of balance: what it gives up on the way to the next equilibrium is
+/// booked as relaxed, not as an error.
+#[test]
+fn what_is_cut_between_lines_relaxes() {
+    let lines = "statics 2\nregion more block INF INF INF 0.0039 INF INF units box\n\
+                 peri_crack plane 0.007 0 0 1 0 0 region more units box\nfix pull hi move linear 0 0 0 units box\nstatics 1";
+    let [work, energy, released, relaxed, error] = ledger(&run(&deck(PMB, "1.0", lines)));
+    // Nothing moves but what is free: no work, and all that is missing was given up.
+    assert!(work.abs() < 1e-12 && released == 0.0 && error == 0.0, "{work} {released} {error}");
+    assert!(relaxed > 0.0 && (relaxed + energy).abs() < 1e-9 * relaxed, "{relaxed} {energy}");
+}
+
+/// A crack that runs away under a fixed load: after as many equilibria as a load step may have the line ends with a warning, and a run lets the
+/// crack run.
+#[test]
+fn a_crack_that_runs_away_is_left_to_a_run() {
+    let lines = "compute s all statics\ncompute d all damage/atom\ncompute most all reduce ave c_d\n\
+                 thermo_style custom step time pe ke c_most\nstatics 8 most 3\nprint \"left $(c_s[6]) $(c_most)\"\n\
+                 unfix base\nunfix pull\nfix base lo setforce 0 0 0\nfix pull hi setforce 0 0 0\ntimestep 2e-8\nrun 400\nprint \"ran $(c_most) $(ke)\"";
+    let text = run(&deck(PMB, "2.0e-4", lines));
+    assert!(text.contains("bonds still break after 3 equilibria"), "{text}");
+    let (left, ran) = (printed(&text, "left "), printed(&text, "ran "));
+    assert!(left[0] > 0.0 && ran[0] > 2.0 * left[1] && ran[1] > 0.0, "{left:?} {ran:?}");
+}

@@ -34,7 +34,8 @@ pub struct Statics {
     /// Which of the bonds stretched beyond their limit break at an equilibrium, before the body is balanced again.
     #[word(keyword, default = Break::One)]
     r#break: Break,
-    /// How often the body is balanced in one load step at most, each time with other bonds.
+    /// How often the body is balanced in one load step at most, each time with other bonds; where bonds still break then, the line ends out of
+    /// balance, with a warning.
     #[word(keyword, name = "M", what = "the most equilibria of a load step", from = 1, default = 10_000)]
     most: i64,
     /// How the load of a load step is found.

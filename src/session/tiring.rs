@@ -43,8 +43,8 @@ pub struct Tiring {
     /// The unbalanced force at an equilibrium, over the larger one of reactions and loads.
     #[word(keyword, name = "E", what = "the tolerance", positive, default = 1e-6)]
     tol: f64,
-    /// How many equilibria are found at most, each a step of the clock that takes no time.
-    #[word(keyword, name = "M", what = "the most equilibria", from = 1, default = 10_000)]
+    /// How many equilibria are found at most, each a step of the clock that takes no time; cycles pass between two.
+    #[word(keyword, name = "M", what = "the most equilibria", from = 2, default = 10_000)]
     most: i64,
     /// A file with a row of numbers for each equilibrium.
     #[word(keyword, name = "NAME", what = "a file name", kind = words::Kind::File)]
@@ -240,6 +240,7 @@ fn block(end: End, all: &Row, ledger: &Ledger) -> String {
     let why = match end {
         End::Cycles => "all cycles have passed",
         End::Equilibria => "as many equilibria as `most` allows",
+        End::RunsAway => "bonds break without further cycles",
         End::Halted => "a fix has halted it",
         End::Ended => "ended early",
     };

@@ -122,7 +122,8 @@ impl Conducting {
         (t, received): (&mut [f64], &[f64]),
         memo: &mut [f64],
     ) -> Result<()> {
-        let (before, dt) = (t.to_vec(), memo[1]);
+        let (mut before, dt) = (t.to_vec(), memo[1]);
+        let first = std::mem::replace(&mut memo[8], 1.0) == 0.0;
         let Some(families) = w.families.as_ref() else { return Ok(()) };
         let mut scene = self.scene(w, families);
         let edges = edges(w, &scene);
@@ -131,16 +132,26 @@ impl Conducting {
         }
         memo[5] += par::sum(t.len(), |i| if scene.capacity[i] > 0.0 { received[i] } else { 0.0 });
         edges.iter().for_each(|(_, edge)| scene.add(edge));
-        for (_, edge) in edges.iter().filter(|(_, edge)| edge.boundary.does == Does::Holds) {
-            edge.members.iter().for_each(|i| t[*i as usize] = edge.boundary.value);
+        let mut jumps = vec![0.0; edges.len()];
+        for ((_, edge), jump) in
+            edges.iter().zip(&mut jumps).filter(|((_, e), _)| e.boundary.does == Does::Holds)
+        {
+            for i in edge.members.iter().map(|i| *i as usize) {
+                t[i] = edge.boundary.value;
+                if first {
+                    // What is held jumps there at once: the mean over the first step is that of the value, not half of the way.
+                    *jump += scene.capacity[i] * (t[i] - before[i]);
+                    before[i] = t[i];
+                }
+            }
         }
         let acted = match body.implicit {
             true => self.implicit(body, families, &scene, (&before, t), dt)?,
             false => explicit(body, families, &scene, t, dt),
         };
         memo[6] = acted.products as f64;
-        for (key, edge) in &edges {
-            let brought = brought(edge, &scene, &acted, (&before, t), dt);
+        for ((key, edge), jump) in edges.iter().zip(jumps) {
+            let brought = jump + brought(edge, &scene, &acted, (&before, t), dt);
             memo[match edge.boundary.does {
                 Does::Holds => 2,
                 Does::Heats { .. } => 3,

@@ -131,7 +131,7 @@ pub struct Declared {
 #[derive(Clone, Copy)]
 pub struct Keys {
     /// Steps and time since it acted last, heat from held particles, fluxes, fluids and `heatflow`, products, and
-    /// the heat of all particles.
+    /// the heat of all particles, and whether it has acted.
     pub memo: Numbers,
     /// The weighted volume m of each family at birth.
     pub m: Numbers,
@@ -140,7 +140,7 @@ pub struct Keys {
 }
 
 /// Numbers of [`Keys::memo`].
-pub const NUMBERS: usize = 8;
+pub const NUMBERS: usize = 9;
 
 impl Declared {
     fn keys(&self) -> Keys {

@@ -57,6 +57,8 @@ pub enum End {
     Cycles,
     /// So many equilibria as there may be have been found.
     Equilibria,
+    /// Bonds break without further cycles.
+    RunsAway,
     /// A fix has ended it.
     Halted,
     /// It was ended from outside.
@@ -95,6 +97,10 @@ pub fn fatigue(
         balance.w.clock.step += 1;
         let mut made = Numbers::default();
         par::inside(|| balance.equilibrium(&mut made, torn))?;
+        if balance.runs_away {
+            end = End::RunsAway;
+            break;
+        }
         // The scene ends in equilibrium: nothing tires behind the last one.
         let more = balance.w.clock.step < balance.w.clock.last;
         let tired = if more { tire(balance.w, cycles - all.cycles)? } else { Tired::default() };

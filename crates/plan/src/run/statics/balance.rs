@@ -62,6 +62,10 @@ pub(in crate::run) struct Balance<'a> {
     pub part: [f64; 2],
     /// Bonds that broke since their springs were found.
     pub stale: usize,
+    /// Bonds still broke after as many equilibria of a load step as there may be.
+    pub runs_away: bool,
+    /// The first load step begins out of balance.
+    pub unsettled: bool,
 }
 
 impl<'a> Balance<'a> {
@@ -86,6 +90,8 @@ impl<'a> Balance<'a> {
             ratio: (0.0, 0.0),
             part: [0.0; 2],
             stale: 0,
+            unsettled: false,
+            runs_away: false,
         }
     }
 
@@ -248,6 +254,7 @@ impl<'a> Balance<'a> {
             families.counts_losses = counted;
         }
         self.part[1] = self.part[0];
+        let torn = torn || std::mem::take(&mut self.unsettled);
         self.ledger.balanced(self.w, &self.body, torn);
         let of_families = self.w.families.as_ref().map_or(0, |families| families.broken().len());
         let broken = of_families + bonds.saturating_sub(self.w.bonds.list.len());
