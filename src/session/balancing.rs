@@ -155,7 +155,7 @@ impl Session {
             let text = format!("`statics` does not find equilibria under pair_style {}", facts.name);
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text).label(at, "declared here");
             return Err(d
-                .help("it does under peri/pmb, peri/lps and what else has no memory; `minimize` moves other particles to rest")
+                .help("it does under the peridynamic styles; `minimize` moves other particles to rest")
                 .into());
         }
         if let Some(node) = &self.graph.bond {

@@ -85,7 +85,7 @@ pub(super) const STATICS: Entry = (
             count with their mean; of bonds that flow or relax (peri/eps, peri/ves, peri/pmb/plastic) it counts as lost. Energies are true ones, also where `pe` sums densities.\n\n\
             Thermo output, dumps, averages and `print` come as in a run of `N` steps. A run behind it begins with velocities of 0. The force \
             on what `fix move` leads is the sum of `fx` over its group (`compute reduce`). Bonds of a \
-            `bond_style`, contacts of grains with friction, rigid bodies and fixes that insert or delete are refused by \
+            `bond_style`, contacts of grains, rigid bodies and fixes that insert or delete are refused by \
             name, and so are bodies of which nothing holds a piece along some axis, but for `solver adr`.",
         example: "fix motion plate nve\nfix base foot setforce 0.0 0.0 0.0\nregion far block INF INF 0.003 INF INF INF units box\n\
             group far region far\nfix pull far move linear 0.0 1.0e-3 0.0 units box\nstatics 2 time 1.0e-6",
