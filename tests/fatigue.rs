@@ -1,7 +1,6 @@
 //! Bonds that tire: cycles as powers of loads, the same bits on any number of threads and ranks, restart files.
 
-use std::path::Path;
-use std::process::Command;
+use super::decks::run_in;
 
 /// A row of 14 points without one of them, along which bonds reach three points far: forces are linear in displacements. `PULL` is how
 /// far its right end is drawn, `FATIGUE` what follows.
@@ -64,19 +63,6 @@ statics 1
 ";
 const PMB: &str = "pair_style peri/pmb\npair_coeff 1 1 3.05e21 3.0151e-3 1.0 0.0";
 const LPS: &str = "pair_style peri/lps\npair_coeff 1 1 4.4e10 3.0e10 3.0151e-3 1.0 0.0";
-
-/// Runs a deck in a folder; its output and whether it went well.
-fn run_in(folder: &Path, deck: &str, words: &[&str]) -> (String, bool) {
-    std::fs::write(folder.join("in.deck"), deck).unwrap();
-    let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
-        .args(["-in", "in.deck", "-log", "none"])
-        .args(words)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
-    (text, out.status.success())
-}
 
 /// The rows of the file `lives` that a deck writes, and its text.
 fn lives(deck: &str, words: &[&str]) -> (Vec<Vec<f64>>, String) {

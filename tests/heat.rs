@@ -1,6 +1,6 @@
 //! Heat in solids: bars whose temperatures are known, what is kept, and what is refused.
 
-use std::process::Command;
+use super::decks::run_with;
 
 /// A slab of 40 x 6 x 6 points, repeated in y and z, from x = -1 to 1 that conducts heat with k = ρc = 1; `FIXES` and `RUN` are filled in.
 const BAR: &str = "\
@@ -36,20 +36,6 @@ RUN
 
 fn deck(fixes: &str, run: &str) -> String {
     BAR.replace("FIXES", fixes).replace("RUN", run)
-}
-
-/// Standard output and error, and whether it went well.
-fn run_with(deck: &str, words: &[&str]) -> (String, bool) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("in.deck"), deck).unwrap();
-    let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
-        .args(["-in", "in.deck", "-log", "none"])
-        .args(words)
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
-    (text, out.status.success())
 }
 
 /// The last row of the step table.

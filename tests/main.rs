@@ -16,6 +16,8 @@ mod compare;
 mod computes;
 #[path = "data/main.rs"]
 mod data;
+#[path = "common/decks.rs"]
+mod decks;
 mod disk;
 #[path = "dumps/main.rs"]
 mod dumps;

@@ -1,6 +1,6 @@
 //! Load steps of solids: equilibria, their work, cracks that grow at equilibria, and runs behind them.
 
-use std::process::Command;
+use super::decks::run_with;
 
 /// A bar of glass of 14 x 6 x 4 points with a notch in the middle, its left end held, its right end pulled by 1 micrometre in
 /// each unit of time; `LAW` and `STEPS` are filled in.
@@ -39,20 +39,6 @@ const LPS: &str = "pair_style peri/lps\npair_coeff 1 1 4.4e10 3.0e10 3.0151e-3 S
 
 fn deck(law: &str, s00: &str, steps: &str) -> String {
     BAR.replace("LAW", &law.replace("S00", s00)).replace("STEPS", steps)
-}
-
-/// Standard output and error, and whether it went well.
-fn run_with(deck: &str, words: &[&str]) -> (String, bool) {
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("in.deck"), deck).unwrap();
-    let out = Command::new(env!("CARGO_BIN_EXE_perigrain"))
-        .args(["-in", "in.deck", "-log", "none"])
-        .args(words)
-        .current_dir(folder.path())
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&out.stdout).into_owned() + &String::from_utf8_lossy(&out.stderr);
-    (text, out.status.success())
 }
 
 fn run(deck: &str) -> String {

@@ -112,6 +112,11 @@ impl Families {
         }
     }
 
+    /// Whether [`Families::taken`] has all that is lost between two equilibria, however far apart they are.
+    pub fn knows_what_it_takes(&self) -> bool {
+        matches!(self.law.kind.losses, Losses::Damage | Losses::Sites)
+    }
+
     /// Adds up what flow and damage of materials have taken in this step.
     pub(super) fn add_lost(&mut self) {
         let add = |sum: [f64; 2], lost: &[f64; 2]| [sum[0] + lost[0], sum[1] + lost[1]];

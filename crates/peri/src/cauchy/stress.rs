@@ -2,7 +2,6 @@
 
 use crate::cauchy::Continuum;
 use crate::families::{Families, PeriView};
-use crate::law::style::Losses;
 use perigrain_constitutive::{Failure, Memory};
 
 /// What one particle is like.
@@ -23,11 +22,6 @@ impl Families {
         let stress = *own.stress.get(site)?;
         let torn = own.inverse.get(site).is_some_and(|k| k[0] <= 0.0);
         Some(State { stress, memory: own.memory_of(site), torn })
-    }
-
-    /// Whether [`Families::taken`] has all that is lost between two equilibria, however far apart they are.
-    pub fn knows_what_it_takes(&self) -> bool {
-        matches!(self.law.kind.losses, Losses::Damage | Losses::Sites)
     }
 
     /// Adds to each particle what its flow in the last evaluation has turned into heat.
