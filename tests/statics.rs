@@ -167,6 +167,8 @@ fn what_cannot_be_balanced_is_refused() {
         ("statics 1 break batch 2", "the fraction must lie between 0 and 1"),
         ("statics 1 tol 0", "the tolerance"),
         ("statics 1 control damage break all", "`control damage` breaks one bond after another"),
+        ("statics 1 control opening 0", "the opening of a load step"),
+        ("statics 1 control opening 1e-5 solver adr", "`control opening` finds time and places together"),
         ("statics 1 until 2", "the fraction must lie between 0 and 1"),
     ] {
         let (text, well) = run_with(&deck(PMB, "1.0", steps), &[]);
@@ -210,6 +212,92 @@ fn damage_control_finds_the_limit_forwards_and_back() {
         })
         .collect();
     assert!(times.windows(2).any(|t| t[1] < t[0]), "{times:?}");
+}
+
+/// Three points in a row: the bond of the first two softens from the stretch 1e-3 on, that of the last two does not.
+const TWO: &str = "\
+units si
+atom_style peri
+boundary s s s
+lattice sc 1e-3 origin 0.5 0.5 0.5
+region box block 0 0.003 0 0.001 0 0.001 units box
+create_box 2 box
+create_atoms 1 box
+region right block 0.002 INF INF INF INF INF units box
+region left block INF 0.001 INF INF INF INF units box
+group hi region right
+group lo region left
+group mid subtract all lo hi
+set group hi type 2
+set group all volume 1e-9 density 2440
+pair_style peri/pmb/softening LAW
+pair_coeff 1 1 1e22 1.5e-3 1e-3 40
+pair_coeff * 2 1e22 1.5e-3 0.5 1e9
+peri_modify force newton
+fix 1 all nve
+fix base lo move linear 0 0 0 units box
+fix pull hi move linear 1.0e-7 0 0 units box
+compute x mid reduce ave x
+compute r hi reduce ave x
+variable s1 equal (c_x-0.0015)/0.001
+variable s2 equal (c_r-c_x-0.001)/0.001
+timestep 1
+thermo 1
+thermo_style custom step time v_s1 v_s2
+thermo_modify format float %23.17g
+statics 24 tol 1e-10 control opening 1e-4
+";
+
+/// Two springs in series, of which one softens more steeply than the other is stiff: the load falls with its path going back. Both bear the
+/// same force, so that the second's stretch is g(s) of the first: s below the peak s₀, beyond it s₀ (s_f − s)/(s_f − s₀) or
+/// s₀ exp(ln 10⁻³ (s − s₀)/(s_f − s₀)), with πcδ⁵/5 ∫ g ds = 40 J/m². 1e-8 of the peak: the forces differ by 1e-10 of them, the rest is the
+/// turn of nothing (a row stays a row) and rounding.
+#[test]
+fn a_snap_back_of_two_springs_is_followed() {
+    let (peak, scale): (f64, f64) = (1e-3, std::f64::consts::PI * 1e22 * 1.5e-3f64.powi(5) / 5.0);
+    let area = 40.0 / scale;
+    for law in ["linear", "exponential"] {
+        let text = run(&TWO.replace("LAW", law));
+        let rest = 1e-3f64;
+        let last = match law {
+            "linear" => 2.0 * area / peak,
+            _ => peak + (area / peak - 0.5 * peak) / (1.0 - rest) * -rest.ln(),
+        };
+        let force = |s: f64| match law {
+            _ if s <= peak => s,
+            "linear" => (peak * (last - s) / (last - peak)).max(0.0),
+            _ => peak * (rest.ln() * (s - peak) / (last - peak)).exp(),
+        };
+        let (rows, _) = text.split_once("Loop time").unwrap();
+        let rows: Vec<Vec<f64>> = rows
+            .lines()
+            .map(|line| line.split_whitespace().filter_map(|word| word.parse().ok()).collect::<Vec<f64>>())
+            .filter(|row| row.len() == 4)
+            .collect();
+        assert_eq!(rows.len(), 25, "{text}");
+        let mut back = 0;
+        for pair in rows.windows(2) {
+            let [before, now]: [[f64; 4]; 2] = [0, 1].map(|k| pair[k][..].try_into().unwrap());
+            let [step, time, s1, s2] = now;
+            // By 1e-4 of its length, as long as it lives.
+            let grown = (1.0 + s1) / (1.0 + before[2]) - 1.0;
+            assert!(s1 > last || (grown - 1e-4).abs() < 1e-12, "{law} {step}: {grown}");
+            assert!((s2 - force(s1)).abs() < 1e-8 * peak, "{law} {step}: {s1} {s2} {}", force(s1));
+            assert!((time * 1e-7 - 1e-3 * (s1 + s2)).abs() < 1e-8 * 1e-3 * peak, "{law} {step}: {time}");
+            back += usize::from(time < before[1]);
+        }
+        assert!(back >= 3, "{law}: {rows:?}");
+    }
+}
+
+/// Brittle bonds break where their opening passes the limit, each at the load that keeps the next one's length: the same energies as elsewhere.
+#[test]
+fn an_opening_breaks_brittle_bonds_too() {
+    let steps = format!("{NUMBERS}statics 40 control opening 2.0e-5 until 0.3");
+    let text = run(&deck(PMB, "2.0e-4", &steps));
+    let [work, energy, released, relaxed, error] = ledger(&text);
+    assert!((work - energy - released - relaxed).abs() < 1e-4 * work && error.abs() < 1e-4 * work, "{text}");
+    assert!(released > 0.0 && printed(&text, "  Bonds broken =")[0] > 5.0, "{text}");
 }
 
 /// `until` ends where the load has fallen.

@@ -61,6 +61,13 @@ enum Controls {
     /// Time moves, forwards or back, to where the bond stretched most over its limit is at it, and that bond breaks: one load step
     /// for each break, so that loads that fall while a crack grows are followed (snap-back). Paths and loads should be linear in time.
     Damage,
+    /// Time moves, forwards or back, to where the bond that opens fastest has opened by S more, so that a body whose bonds soften is followed past
+    /// its peak and along a snap-back. Paths and loads should be linear in time.
+    Opening {
+        /// By how much of its length.
+        #[word(name = "S", what = "the opening of a load step", positive)]
+        stretch: f64,
+    },
 }
 
 /// How equilibria are found.
@@ -103,6 +110,7 @@ impl Session {
         let control = match line.control {
             Controls::Load => Control::Load,
             Controls::Damage => Control::Damage,
+            Controls::Opening { stretch } => Control::Opening(stretch),
         };
         if control == Control::Damage && breaking != Breaking::One {
             let text = "`control damage` breaks one bond after another";
@@ -113,6 +121,11 @@ impl Session {
             Solvers::Newton => Solver::Newton,
             Solvers::Adr => Solver::Adr,
         };
+        if matches!(control, Control::Opening(_)) && solver == Solver::Adr {
+            let text = "`control opening` finds time and places together, which relaxation cannot";
+            let d = Diagnostic::error(Code::CONFLICT, cmd.span, text);
+            return Err(d.help("remove `solver adr`").into());
+        }
         let goal = Goal {
             steps: line.steps,
             tol: line.tol,

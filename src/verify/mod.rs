@@ -42,6 +42,7 @@ pub const DECKS: &[(&str, &str)] = decks![
     "peridynamics/tension",
     "peridynamics/beam_frequency",
     "peridynamics/beam_deflection",
+    "peridynamics/kirsch",
     "peridynamics/breaking_after_flow",
     "peridynamics/plate_impact",
     "peridynamics/kalthoff_winkler",

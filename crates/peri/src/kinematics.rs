@@ -12,8 +12,8 @@ const FLAT: f64 = 1e-10;
 
 impl Families {
     /// The deformation gradient of a particle, F = (Σ ω w Y⊗ξ V_j) K⁻¹ with the shape tensor K = Σ ω w ξ⊗ξ V_j over
-    /// the living bonds (Silling et al. 2007; Hartmann et al. 2023, Eq. 26 and 27). `None` without three bonds in
-    /// independent directions.
+    /// the living bonds (Silling et al. 2007; Hartmann et al. 2023, Eq. 26 and 27). A family that lies and stays in a plane of constant z
+    /// is not strained across it. `None` without three, or in such a plane two, bonds in independent directions.
     pub fn gradient(&self, view: &PeriView, i: usize) -> Option<Tensor> {
         let (mut shape, mut moved) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         self.each(i, |n| {
@@ -30,6 +30,9 @@ impl Families {
                 }
             }
         });
+        if flat(&shape) && moved[2] == [0.0; 3] {
+            (shape[2][2], moved[2][2]) = (shape[0][0], shape[0][0]);
+        }
         let inverse = inverse(&shape)?;
         Some([0, 1, 2].map(|a| [0, 1, 2].map(|b| (0..3).map(|k| moved[a][k] * inverse[k][b]).sum())))
     }
@@ -57,7 +60,12 @@ impl Families {
         if !self.damaged.get(i).copied().unwrap_or(false) {
             return false;
         }
-        let Shapes { left, whole, broken } = self.shapes(view, i);
+        let Shapes { mut left, mut whole, broken } = self.shapes(view, i);
+        if flat(&whole) {
+            // No mechanism is to be found across the plane.
+            let most = whole[0][0] + whole[1][1];
+            (left[2][2], whole[2][2]) = (most, most);
+        }
         broken
             && (self.damage(i, view.volume) > most
                 || least_eigenvalue(&left) < HINGE * least_eigenvalue(&whole))
@@ -82,6 +90,11 @@ impl Families {
         });
         Shapes { left, whole, broken }
     }
+}
+
+/// Whether no bond of a shape tensor leaves a plane of constant z.
+fn flat(shape: &Tensor) -> bool {
+    shape[2][2] == 0.0 && shape[0][0] > 0.0
 }
 
 /// The least eigenvalue of a symmetric tensor (Smith, Comm. ACM 4 (1961) 168).

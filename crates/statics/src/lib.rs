@@ -3,7 +3,7 @@
 //!
 //! - [`network`] is a body's tangent: bonds as columns and their response to motions of the particles; [`contacts`] and
 //!   [`walls`] add what touches. [`pairs`] sums over them with the same bits for any number of threads.
-//! - [`pcg`] solves a linear system, with block Jacobi ([`precond`]) or clusters that move rigidly ([`coarse`]);
+//! - [`pcg`] solves a linear system ([`minres`] one that is not definite), with block Jacobi ([`precond`]) or clusters that move rigidly ([`coarse`]);
 //!   [`newton`] solves with contacts that open and close, [`load_steps`] along a path with slip.
 //! - [`dsm`] (between ends), [`periodic`] (a cell), [`strength`] (bond after bond) and [`ste`] (a closed formula) are the
 //!   methods, [`certificate`] a lower bound, [`energy_shares`] the sensitivities, [`stable_step`] the limit of a run.
@@ -19,6 +19,7 @@ pub mod dsm;
 pub mod ends;
 pub mod energy_shares;
 pub mod load_steps;
+pub mod minres;
 pub mod network;
 pub mod newton;
 pub mod pairs;

@@ -44,7 +44,7 @@ pub struct Solved {
 
 /// Preconditioner of [`solve`]: blocks, and coarse levels if there are many steps.
 pub struct Preconditioner<'a> {
-    blocks: &'a Blocks,
+    pub(crate) blocks: &'a Blocks,
     make: Option<&'a dyn Fn() -> Coarse>,
     /// Coarse levels, once they are made; those of a similar matrix work as well.
     coarse: Option<Coarse>,
@@ -69,6 +69,24 @@ impl<'a> Preconditioner<'a> {
     /// Coarse levels for the next matrix, unless this solution shows that they are outdated.
     pub fn kept(self, solved: &Solved) -> Option<Coarse> {
         self.coarse.filter(|_| solved.iterations <= OLD)
+    }
+
+    /// z = M⁻¹ r of the free components.
+    pub(crate) fn apply(&self, r: &[Six], z: &mut [Six]) {
+        let blocks = self.blocks;
+        par::each(&mut z[..], |start, rows: &mut [Six]| {
+            rows.iter_mut().enumerate().for_each(|(k, row)| *row = blocks.apply(start + k, &r[start + k]));
+        });
+        if let Some(coarse) = &self.coarse {
+            coarse.add_to(z, r, blocks);
+        }
+    }
+
+    /// The coarse levels, if there are none yet.
+    pub(crate) fn make(&mut self) {
+        if let (None, Some(make)) = (&self.coarse, self.make) {
+            self.coarse = Some(make());
+        }
     }
 
     /// Adds the correction of the coarse levels, if any, to z = M⁻¹ r, with r·z = `rz`; returns the new r·z.
@@ -206,7 +224,7 @@ pub fn solve(
     }
 }
 
-fn inner(a: &Six, b: &Six) -> f64 {
+pub(crate) fn inner(a: &Six, b: &Six) -> f64 {
     (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 

@@ -77,6 +77,10 @@ pub(super) const STATICS: Entry = (
             forwards or back, and that bond breaks. So the load falls where the body would otherwise fly apart at a fixed load \
             (snap-back), and no energy is given up but the little that one bond leaves. `N` is the most breaks, `T`/`N` the first guess \
             of a time; paths and loads should be linear in time. `until 0.2` ends where the load has fallen to 0.2 of its peak.\n\n\
+            Under `control opening S` time and places are found together, so that the bond that opens fastest is longer by `S` of its length \
+            (indirect displacement control). Bodies whose bonds soften are followed past the peak of their load and along a snap-back; a fifth of the \
+            stretch at the peak is a good `S` there. `T`/`N` is the first guess of a time, and what the load moves by where nothing opens. Where a bond breaks \
+            the load moves so that the next fastest keeps its length.\n\n\
             A table at the end has, for each load step, Newton's steps, products, the unbalanced force over reactions \
             and loads, bonds that broke, work and released energy; `compute statics` offers these numbers in rows and variables.\n\n\
             Then the log states the work of paths and loads, and where it is: in the energy of the body, released by \

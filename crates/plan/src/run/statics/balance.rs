@@ -1,6 +1,8 @@
 //! From a place out of balance to one in balance: Newton's method over the ops of a plan.
 
 use super::ledger::Books;
+use super::linear::SMALL;
+use super::opening::Way;
 use super::path::Start;
 use super::{Body, Breaking, Goal, Numbers, Scene, Solver};
 use crate::run::verlet::tick;
@@ -8,19 +10,12 @@ use crate::{Stage, StepPlan, Tick};
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result};
 use perigrain_base::par;
 use perigrain_statics::coarse::Coarse;
-use perigrain_statics::pcg::{self, Preconditioner};
 use perigrain_statics::precond::Blocks;
 use perigrain_statics::six::Six;
 use perigrain_world::World;
-use std::cell::RefCell;
 
-/// Displacements that forces are differentiated with, in distances of neighbours: stretches of 1e-6 are far above
-/// rounding and far below where bonds bend the force.
-const SMALL: f64 = 1e-6;
 /// Newton's steps in which a body has to be balanced.
 const STEPS: usize = 40;
-/// Products of one linear system at most.
-const PRODUCTS: usize = 2000;
 /// How often a step is halved where its end is farther from balance than its beginning.
 const HALVINGS: usize = 30;
 /// Where so little is left over reactions and loads and two steps in a row do not halve it, it is rounding: a stretch
@@ -49,7 +44,7 @@ pub(in crate::run) struct Balance<'a> {
     pub scene: Scene,
     /// The damping of relaxation, which lasts from one equilibrium to the next.
     pub damping: f64,
-    coarse: Option<Coarse>,
+    pub(super) coarse: Option<Coarse>,
     /// How far led particles move from where they are.
     pub path: Vec<[f64; 3]>,
     /// How the free ones moved last: where the next solution begins, and for which part of a load step.
@@ -60,6 +55,8 @@ pub(in crate::run) struct Balance<'a> {
     pub ratio: (f64, f64),
     /// The part of the load step at the present place, and the one up to which bonds remember.
     pub part: [f64; 2],
+    /// How the last load step went whose opening was given.
+    pub(super) way: Option<Way>,
     /// Bonds that broke since their springs were found.
     pub stale: usize,
     /// Bonds still broke after as many equilibria of a load step as there may be.
@@ -89,6 +86,7 @@ impl<'a> Balance<'a> {
             start,
             ratio: (0.0, 0.0),
             part: [0.0; 2],
+            way: None,
             stale: 0,
             unsettled: false,
             runs_away: false,
@@ -140,7 +138,7 @@ impl<'a> Balance<'a> {
         field.resize(n, [0.0; 6]);
         let scale = if of == 0.0 { 0.0 } else { share / of };
         field.iter_mut().flatten().for_each(|u| *u *= scale);
-        self.solve((&base, &here), &load, &mut field, AHEAD, made)?;
+        self.solve((&base, &here), &load, &mut field, (AHEAD, None), made)?;
         self.w.particles.x = base;
         for i in 0..n {
             for d in 0..3 {
@@ -184,7 +182,7 @@ impl<'a> Balance<'a> {
             forcing = forcing.max(EXACT * self.goal.tol * scale / size).min(FORCING);
             let (base, here) = (self.w.particles.x.clone(), self.w.particles.f.clone());
             let mut field = vec![[0.0; 6]; r.len()];
-            self.solve((&base, &here), &r, &mut field, forcing, made)?;
+            self.solve((&base, &here), &r, &mut field, (forcing, None), made)?;
             made.newton += 1;
             let mut along = inner(&r, &field);
             if along <= 0.0 {
@@ -315,70 +313,9 @@ impl<'a> Balance<'a> {
         out
     }
 
-    fn place(&mut self, base: &[[f64; 3]], field: &[Six], part: f64) {
+    pub(super) fn place(&mut self, base: &[[f64; 3]], field: &[Six], part: f64) {
         for ((x, from), u) in self.w.particles.x.iter_mut().zip(base).zip(field) {
             *x = std::array::from_fn(|d| from[d] + part * u[d]);
-        }
-    }
-
-    /// Solves K u = load with the tangent stiffness at `base`, where the forces are `here`, from `field` on, until `forcing` of the
-    /// load is left. A product is the difference of the forces a little further along and those here.
-    fn solve(
-        &mut self,
-        (base, here): (&[[f64; 3]], &[[f64; 3]]),
-        load: &[Six],
-        field: &mut [Six],
-        forcing: f64,
-        made: &mut Numbers,
-    ) -> Result<()> {
-        let (size, goal) = (SMALL * self.body.size, forcing * norm(load));
-        let (blocks, network) = (std::mem::take(&mut self.blocks), std::mem::take(&mut self.body.network));
-        let parts_of = |blocks: &Blocks| Coarse::of_families(&network, blocks);
-        // Clusters from the first step on: load steps after load steps use them.
-        let coarse = self.coarse.take().or_else(|| (network.bonds() > 0).then(|| parts_of(&blocks)));
-        let me = RefCell::new(&mut *self);
-        let (failed, products) = (RefCell::new(None), RefCell::new(0));
-        let product = |p: &[Six], out: &mut [Six]| {
-            let most = p.iter().flat_map(|u| &u[..3]).fold(0.0, |m: f64, a| m.max(a.abs()));
-            if most == 0.0 || failed.borrow().is_some() {
-                out.fill([0.0; 6]);
-                return;
-            }
-            *products.borrow_mut() += 1;
-            let step = size / most;
-            let mut me = me.borrow_mut();
-            for ((x, from), u) in me.w.particles.x.iter_mut().zip(base).zip(p) {
-                *x = std::array::from_fn(|d| from[d] + step * u[d]);
-            }
-            if let Err(e) = me.residual(false) {
-                *failed.borrow_mut() = Some(e);
-                out.fill([0.0; 6]);
-                return;
-            }
-            let columns = (&mut *out, here, &me.w.particles.f[..], &me.body.weight[..]);
-            par::each(columns, |_, (out, here, there, weight)| {
-                for (k, out) in out.iter_mut().enumerate() {
-                    let of = |d: usize| (here[k][d] - there[k][d]) * weight[k] / step;
-                    *out = [of(0), of(1), of(2), 0.0, 0.0, 0.0];
-                }
-            });
-        };
-        let make = || parts_of(&blocks);
-        let mut by = match network.bonds() {
-            0 => Preconditioner::plain(&blocks),
-            _ => Preconditioner::again(&blocks, &make, coarse),
-        };
-        let solved = pcg::solve(product, &mut by, Some(load), field, 0.0, PRODUCTS, |progress| {
-            progress.residual <= goal
-        });
-        let coarse = by.kept(&solved);
-        let (failed, products) = (failed.into_inner(), products.into_inner());
-        (self.coarse, self.blocks, self.body.network) = (coarse, blocks, network);
-        made.products += products;
-        self.w.particles.x.copy_from_slice(base);
-        match failed {
-            Some(e) => Err(e),
-            None => Ok(()),
         }
     }
 }

@@ -9,6 +9,8 @@ mod adr;
 mod balance;
 mod bodies;
 mod ledger;
+mod linear;
+mod opening;
 mod path;
 
 use super::verlet::{cpu_seconds, tick};
@@ -52,12 +54,14 @@ impl Breaking {
 }
 
 /// How the load of a load step is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Control {
     /// Time moves by the same amount in each load step.
     Load,
     /// Time moves, forwards or back, to where the next bond is at its limit, and this bond breaks.
     Damage,
+    /// Time moves, forwards or back, to where the bond that opens fastest has opened by so much of its length.
+    Opening(f64),
 }
 
 /// How equilibria are found.
@@ -265,6 +269,7 @@ impl Balance<'_> {
                     self.ratio.0 = self.load_ratio()?;
                 }
             }
+            Control::Opening(opening) => self.open(opening, &mut made)?,
         }
         self.w.clock.set_dt(self.start.dt());
         Ok(made)

@@ -45,7 +45,7 @@ impl Start {
 impl Balance<'_> {
     /// Moves the clock by a part of the load step from its beginning, and finds how far what stands on paths moves from where it is;
     /// it stays there.
-    fn lead(&mut self, part: f64) -> Result<()> {
+    pub(super) fn lead(&mut self, part: f64) -> Result<()> {
         if self.w.clock.step > self.start.clock.step {
             // Not the first attempt of this load step.
             *self.w.memo = self.start.memo.clone();
