@@ -37,6 +37,8 @@ mod installed_decks;
 mod interrupts;
 #[path = "lammps.rs"]
 mod lammps;
+#[path = "liggghts/main.rs"]
+mod liggghts;
 mod lsp;
 mod meshes;
 mod partitions;

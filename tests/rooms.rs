@@ -25,6 +25,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     // Equilibria of whole bodies, and the limit of their step.
     ("statics", &["base", "bonded"]),
     ("lang", &["base"]),
+    // Another program's decks as native lines: words alone.
+    ("liggghts", &["base", "lang"]),
     ("mesh", &["base"]),
     ("neigh", &["base"]),
     ("peri", &["base", "constitutive"]),
