@@ -197,7 +197,7 @@ pub(crate) const TABLE: &[Entry] = &[
         "compute",
         "erotate/multisphere",
         false,
-        Take::Refused("energy of bodies", "`compute erotate/rigid fixID`"),
+        Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
     ),
     entry(
         "compute",
