@@ -341,10 +341,11 @@ impl Granular {
         let Turn { omega, carried, a, .. } = *turn;
         let (roll, rest) = history.split_at_mut(self.rolling.memory());
         if self.rolling != Rolling::None {
-            // Torques on walls are against the spin that moves the contact point as fast as the surface.
             let mut turn = *turn;
             if self.is_on_wall && self.rolling.is_torque() {
-                turn.omega = scale(g.radii[0] / (g.radii[0] - g.overlap * 0.5), omega);
+                // Measured with LIGGGHTS 3.8.0.
+                let distance = g.radii[0] - g.overlap;
+                turn.omega = scale((distance + g.overlap * 0.5) / distance, omega);
             }
             let torque = self.rolling.torque(g, (n, self.spring.sync), &turn, roll, step);
             w.torque_i = add(w.torque_i, torque);

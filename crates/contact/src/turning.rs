@@ -52,7 +52,7 @@ pub enum Rolling {
 /// What a rolling torque depends on apart from the geometry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn<R> {
-    /// Relative spin ω_i − ω_j; of torques on walls times R/(R − δ/2).
+    /// Relative spin ω_i − ω_j; of torques on walls times (R − δ/2)/(R − δ).
     pub omega: Vec3<R>,
     /// The normal load for friction.
     pub carried: R,

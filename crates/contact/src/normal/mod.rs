@@ -8,6 +8,7 @@ mod dmt;
 mod eepa;
 mod hertz;
 mod hooke;
+mod hooke_hysteresis;
 mod hooke_velocity;
 mod jkr;
 mod mdr;
@@ -177,6 +178,7 @@ macro_rules! table {
             nothing::Nothing: NONE;
             hooke::Hooke: HOOKE;
             hooke_velocity::HookeVelocity: HOOKE_VELOCITY;
+            hooke_hysteresis::HookeHysteresis: HOOKE_HYSTERESIS;
             hertz::Hertz: HERTZ, HERTZ_MATERIAL;
             dmt::Dmt: DMT;
             jkr::Jkr: JKR;

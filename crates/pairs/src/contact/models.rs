@@ -219,7 +219,7 @@ impl Sliding {
     }
 
     fn wrong_stiffness(&self, normal: &Normal) -> Option<Wrong> {
-        let (kind, linear) = (self.kind.name(), normal.exponent() == 1.0 && !normal.pulls());
+        let (kind, linear) = (self.kind.name(), normal.exponent() == 1.0);
         let (text, help) = match self.stiffness {
             Stiffness::Is(_) => return None,
             Stiffness::Ratio(_) | Stiffness::Null if self.kind == Friction::LinearHistory && linear => {
@@ -246,14 +246,15 @@ impl Sliding {
     /// `x_gamma NULL` needs stiffnesses k_t and dF_n/dδ with a constant ratio.
     fn wrong_drag(&self, normal: &Normal) -> Option<Wrong> {
         let (kind, n) = (self.kind, normal.exponent());
+        let (simple, material) = (!normal.pulls(), normal.material().is_some());
         let known = match self.stiffness {
             _ if self.rubbing.x_gamma.value.0.is_some() => true,
-            _ if normal.name() == "none" || normal.pulls() => false,
-            _ if kind == Friction::LinearNohistory => n == 1.0 || (n == 1.5 && normal.material().is_some()),
+            _ if normal.name() == "none" => false,
+            _ if kind == Friction::LinearNohistory => n == 1.0 || (n == 1.5 && material && simple),
             Stiffness::Ratio(_) => true,
-            Stiffness::Null | Stiffness::Is(_) if kind.by_radius() => n == 1.5,
+            Stiffness::Null | Stiffness::Is(_) if kind.by_radius() => n == 1.5 && simple,
             Stiffness::Null => true,
-            Stiffness::Is(_) => n == 1.0 && normal.material().is_none(),
+            Stiffness::Is(_) => n == 1.0 && !material && simple,
         };
         let (normal, kind) = (normal.name(), kind.name());
         let text = || {
