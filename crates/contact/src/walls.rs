@@ -229,6 +229,7 @@ impl WallSweep {
         self.geometry.clear();
         let spheres = self.touching.iter().map(|t| (t, t.grain as usize));
         self.geometry.extend(spheres.map(|(t, i)| geometry(&t.near, grains.radius[i], grains.mass[i])));
+        let law = &law.on_wall();
         let history = par::Rows { data: &mut memory.history[..], width };
         let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.geometry[..]);
         par::each(columns, |_, (wrenches, history, touching, geometry)| {
@@ -339,6 +340,7 @@ impl WallSweep {
         flow: &mut [f64],
     ) -> f64 {
         self.heat.clear();
+        let law = &law.on_wall();
         for t in &self.touching {
             let i = t.grain as usize;
             let conductance = law.conductance(&geometry(&t.near, grains.radius[i], grains.mass[i]));

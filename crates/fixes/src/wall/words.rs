@@ -191,6 +191,9 @@ fn granular(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Model> {
         "`curvature` is for contacts of particles with each other"
     } else if c.model.arm == Arm::Point {
         "`arms` is for contacts of particles with each other"
+    } else if let Some((_, span)) = c.other {
+        let d = Diagnostic::error(Code::CONFLICT, span, "`material` of a wall stands behind the wall");
+        return Err(d.help("write `fix … wall/gran granular … zplane 0 NULL material E nu`").into());
     } else if c.cutoff.is_some() {
         "`cutoff` is for contacts of particles with each other"
     } else {
@@ -205,7 +208,7 @@ fn check_heat(common: &Common) -> Result<()> {
     let (span, text, help) = match &common.temperature {
         Some((_, span)) if !conducts => {
             let text = "a wall has a temperature, but its contacts conduct no heat";
-            (*span, text, "add `heat area H` or `heat radius K` to the model of the wall")
+            (*span, text, "add `heat area H`, `heat radius K` or `heat contact K` to the model of the wall")
         }
         None if conducts => {
             let text = "contacts conduct heat, but the wall has no temperature";

@@ -11,7 +11,7 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
 use perigrain_contact::mdr::{Material, State};
 use perigrain_contact::normal::{plastic, plastic_grain};
-use perigrain_contact::{Damping, Model, Twisting};
+use perigrain_contact::{Cohesion, Damping, Model, Twisting};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_plan::Op;
@@ -69,7 +69,7 @@ pub fn classic(
     let numbers = crate::contact::classic::line(args, hertz, cx)?;
     let model = Model::classic(hertz, history, &numbers);
     let (average, curvature, cutoff) = (Average::None, Curvature::Both, None);
-    let all = Some(Coeff { model, average, curvature, cutoff, span });
+    let all = Some(Coeff { model, other: None, average, curvature, cutoff, span });
     Ok(Box::new(Declared { all, ..Declared::new(name, None) }))
 }
 
@@ -94,7 +94,11 @@ impl Declared {
     fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule, Reach)>> {
         let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
         if let Some(c) = self.given.get(&(i, j)) {
-            let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
+            let law = match &c.other {
+                Some((other, _)) => c.model.beside(other, compat),
+                None => c.model.law(compat),
+            };
+            let rule = Rule { law, average: c.average, curvature: c.curvature };
             return Ok(Some((rule, reach(c.cutoff))));
         }
         let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
@@ -167,8 +171,8 @@ impl Declared {
 
 impl Pair for Declared {
     fn facts(&self) -> Facts {
-        let elastic_grains =
-            self.given.values().all(|c| !c.model.normal.pulls() && !c.model.normal.in_grains());
+        let elastic = |m: &Model| !m.normal.pulls() && !m.normal.in_grains() && m.cohesion == Cohesion::None;
+        let elastic_grains = self.given.values().all(|c| elastic(&c.model));
         Facts { name: self.name, needs: &["diameter", "density"], elastic_grains, ..Facts::default() }
     }
 
@@ -177,6 +181,14 @@ impl Pair for Declared {
             Some(all) => all,
             None => words::coeff(args, cx, &[])?,
         };
+        if let (Some((_, span)), Some((i, _))) = (coeff.other, pairs.iter().find(|(i, j)| i == j)) {
+            let text = format!(
+                "`material` is that of the second of two types, and this line is for type {i} itself too"
+            );
+            return Err(Diagnostic::error(Code::CONFLICT, span, text)
+                .help("name two types, as in `pair_coeff 1 2 …`, or leave the word out")
+                .into());
+        }
         self.given.extend(pairs.iter().map(|&p| (p, coeff)));
         Ok(())
     }
