@@ -65,6 +65,11 @@ pub struct Classic {
 }
 
 impl Model {
+    /// No force at all.
+    pub fn none() -> Self {
+        Self::new(Normal::new(&normal::NONE, &[]), Damping::None, Tangential::SMOOTH)
+    }
+
     /// A model without rolling and twisting resistance.
     pub fn new(normal: Normal, damping: Damping, tangential: Tangential) -> Self {
         Self {

@@ -9,6 +9,7 @@ mod columns;
 mod forms;
 mod image;
 mod local;
+mod mesh;
 mod movie;
 mod packed;
 mod picture;
@@ -38,6 +39,8 @@ pub const DUMPS: &[&dyn DumpStyle] = &[
     &image::Image,
     &local::Local,
     &packed::LOCAL,
+    &mesh::MeshStl,
+    &mesh::MeshVtk,
     &movie::Movie,
     &vtk::Vtk,
     &forms::Xyz,

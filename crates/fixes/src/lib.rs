@@ -44,8 +44,10 @@ mod indent;
 mod kick;
 mod langevin;
 mod lineforce;
+mod massflow_mesh;
 mod momentum;
 mod move_fix;
+mod move_mesh;
 mod nve;
 mod nve_bpm_sphere;
 mod nve_limit;
@@ -67,6 +69,7 @@ mod spring;
 mod spring_self;
 mod store_force;
 mod store_state;
+mod surface;
 mod time_step;
 mod vector;
 mod viscous;
@@ -130,8 +133,10 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &indent::Indent,
     &langevin::Langevin,
     &lineforce::LineForce,
+    &massflow_mesh::MassflowMesh,
     &momentum::Momentum,
     &move_fix::Move,
+    &move_mesh::MoveMesh,
     &nve::Nve,
     &nve_limit::NveLimit,
     &nve_noforce::NveNoForce,
@@ -154,6 +159,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &spring_self::SpringSelf,
     &store_force::StoreForce,
     &store_state::StoreState,
+    &surface::Surface,
     &vector::VectorFix,
     &viscous::Viscous,
     &viscous_nonlinear::ViscousNonlinear,

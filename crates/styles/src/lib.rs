@@ -23,6 +23,7 @@ pub mod fix;
 pub mod lammps;
 pub mod ledger;
 pub mod matter;
+pub mod mesh_surface;
 pub mod molecules;
 pub mod near;
 pub mod newcomers;

@@ -18,7 +18,7 @@ use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::{Compat, World};
+use perigrain_world::{Compat, Constant, World};
 use std::collections::BTreeMap;
 
 /// Whether a model is one of those that LAMMPS does wrong.
@@ -39,6 +39,9 @@ const FAULTS: [(HasFault, &str, bool); 4] = [
         false,
     ),
 ];
+
+/// The laws of `pair_style granular` by pair of types, for walls that lend them.
+pub static GRANULAR_RULES: Constant<Rules> = Constant::new("granular/rules");
 
 /// A granular pair style with its coefficients.
 #[derive(Clone)]
@@ -147,6 +150,18 @@ impl Declared {
         .into())
     }
 
+    /// Lends the laws of `granular` to walls, which are sealed after pair styles.
+    fn lend(&self, w: &mut World, rules: &Rules) {
+        if self.name != "granular" {
+            return;
+        }
+        let types = w.types;
+        let all = w.facts.remove(*GRANULAR_RULES).filter(|all| all.types() == types);
+        let mut all = all.unwrap_or_else(|| Rules::new(types));
+        rules.pairs().for_each(|([i, j], rule)| all.set(i, j, *rule));
+        w.facts.insert(*GRANULAR_RULES, all);
+    }
+
     fn acts_on(&self, i: u16, j: u16) -> bool {
         self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
     }
@@ -194,6 +209,9 @@ impl Pair for Declared {
     }
 
     fn declare(&self, w: &mut World) {
+        if let Ok((rules, _)) = self.tables(w.types, w.settings.compat) {
+            self.lend(w, &rules);
+        }
         if self.given.values().any(|c| c.model.normal.in_grains()) {
             State::declare(w);
         }
@@ -227,6 +245,7 @@ impl Pair for Declared {
                 cx.world().facts.insert(*PLASTIC_GRAIN, grain);
             }
         }
+        self.lend(cx.world(), &rules);
         let types = cx.world().types;
         Ok(vec![(0, Box::new(Force::new(self.name, rules, wanted, types, press)))])
     }
