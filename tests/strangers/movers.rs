@@ -288,6 +288,7 @@ const STAY: &[&str] = &[
     "angle_style",
     "angle_coeff",
     "molecule",
+    "mixture",
 ];
 
 fn mover(name: &str) -> bool {
