@@ -181,6 +181,10 @@ impl Pair for Declared {
         Ok(())
     }
 
+    fn material(&self, kind: u16) -> Option<(f64, f64)> {
+        self.given.get(&(kind, kind))?.model.normal.material()
+    }
+
     fn declare(&self, w: &mut World) {
         if self.given.values().any(|c| c.model.normal.in_grains()) {
             State::declare(w);
