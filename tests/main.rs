@@ -32,6 +32,7 @@ mod geometry;
 mod grains;
 mod heat;
 mod impact;
+mod inserting;
 #[path = "installed_decks/main.rs"]
 mod installed_decks;
 mod interrupts;

@@ -63,6 +63,7 @@ const BY_STRING: &[(&str, &str)] = &[
     ("by_name", "slots are found by name while plans are made; steps have their ids"),
     ("files", "promises are kept while a deck is checked, where no step is made"),
     ("materials", "words of a line that is being read"),
+    ("mixtures", "words of a line that is being read; fixes hold the mixture itself"),
     ("templates", "words of a line that is being read; fixes hold the molecules themselves"),
 ];
 

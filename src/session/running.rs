@@ -268,7 +268,9 @@ impl Session {
             _ => true,
         });
         let mut marks = ledger::Marks::default();
-        for (f, _) in all.collect::<Vec<_>>() {
+        let mut all: Vec<_> = all.collect();
+        all.sort_by_key(|(_, facts)| facts.acts_last);
+        for (f, _) in all {
             s.at_fix(f.span, f.level, f.group.bit());
             let ops = f.fix.ops(&mut s)?;
             let changed = if booked { ledger::changes(&ops) } else { [false; 2] };

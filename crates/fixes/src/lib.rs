@@ -26,6 +26,7 @@ mod deposit;
 mod dipoles;
 mod drag;
 mod dt_critical;
+mod dt_grain;
 mod dt_guard;
 mod dt_reset;
 mod efield;
@@ -41,6 +42,7 @@ mod halt;
 mod heat;
 mod heat_flow;
 mod indent;
+mod insert;
 mod kick;
 mod langevin;
 mod lineforce;
@@ -115,6 +117,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &deposit::Deposit,
     &drag::Drag,
     &dt_critical::DtCritical,
+    &dt_grain::DtGrain,
     &dt_guard::DtGuard,
     &dt_reset::DtReset,
     &efield::Efield,
@@ -131,6 +134,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &heat::Flux,
     &heat::Convect,
     &indent::Indent,
+    &insert::Insert,
     &langevin::Langevin,
     &lineforce::LineForce,
     &massflow_mesh::MassflowMesh,

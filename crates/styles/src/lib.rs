@@ -37,6 +37,7 @@ pub mod seal;
 pub mod step_op;
 pub mod stretching;
 pub mod surface;
+pub mod surface_speed;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod triangles;

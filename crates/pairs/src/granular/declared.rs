@@ -208,6 +208,10 @@ impl Pair for Declared {
         Ok(())
     }
 
+    fn material(&self, kind: u16) -> Option<(f64, f64)> {
+        self.given.get(&(kind, kind))?.model.normal.material()
+    }
+
     fn declare(&self, w: &mut World) {
         if let Ok((rules, _)) = self.tables(w.types, w.settings.compat) {
             self.lend(w, &rules);
