@@ -7,11 +7,12 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::common::about;
 use perigrain_styles::matter::publish;
+use perigrain_styles::mesh_surface::{MeshSurface, SURFACES};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface_speed::fastest;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{FACTS, KIND, MASK, MASS, RADIUS, SLOTS, V};
+use perigrain_world::field::{FACTS, KIND, MASK, MASS, MEMO, RADIUS, SLOTS, V};
 use perigrain_world::{GroupId, World};
 use std::f64::consts::PI;
 
@@ -90,10 +91,18 @@ type Materials = Vec<Option<(f64, f64)>>;
 
 impl Declared {
     /// The step over the Rayleigh time and over the Hertz time, and the way in a step over the skin.
-    fn parts(&self, w: &World, materials: &Materials, dt: f64, span: Span) -> Result<[f64; 3]> {
+    fn parts(
+        &self,
+        w: &World,
+        materials: &Materials,
+        surfaces: &[MeshSurface],
+        dt: f64,
+        span: Span,
+    ) -> Result<[f64; 3]> {
         let (p, bit) = (&w.particles, self.group.bit());
         let speed = p.v.iter().map(|v| length(*v)).fold(0.0, f64::max);
-        let v = (speed + speed.max(fastest(w))).max(self.vmax);
+        let fastest = surfaces.iter().map(|surface| surface.speed(w)).fold(fastest(w), f64::max);
+        let v = (speed + speed.max(fastest)).max(self.vmax);
         // Forces are in units of mass times acceleration over this.
         let units = w.settings.units.constants().ftm2v;
         let (mut rayleigh, mut hertz) = (f64::INFINITY, f64::INFINITY);
@@ -135,11 +144,14 @@ impl Fix for Declared {
         let materials: Materials = (1..=types).map(|kind| cx.material(kind)).collect();
         let slot = cx.slot(&format!("f_{}", self.id));
         cx.world().slots.get_mut(slot).vector.resize(3, 0.0);
-        let needs = Needs::new().read(V | RADIUS | MASS | MASK | KIND | FACTS).write(SLOTS);
+        let all = cx.world().facts.get(*SURFACES);
+        let surfaces: Vec<MeshSurface> = all.map_or(vec![], |all| all.values().cloned().collect());
+        let names: Vec<&'static str> = surfaces.iter().flat_map(|surface| surface.keys.names()).collect();
+        let needs = Needs::new().read(V | RADIUS | MASS | MASK | KIND | FACTS | MEMO).write(SLOTS).only(&names);
         let (me, when) = (self.clone(), When::Every(self.every));
         let mut warned = false;
         let look = move |w: &mut World, t: &Tick| {
-            let parts = me.parts(w, &materials, t.dt, span)?;
+            let parts = me.parts(w, &materials, &surfaces, t.dt, span)?;
             publish(w, slot, t, 0.0, &parts);
             let Some(text) = me.judge(parts) else { return Ok(()) };
             let text = format!("the time step is too long: at step {} it is {text}", t.step);
@@ -195,7 +207,7 @@ mod tests {
             warn: true,
             error: false,
         };
-        fix.parts(&b.world, &vec![Some((5e6, 0.45))], 1e-5, Span::default()).unwrap()
+        fix.parts(&b.world, &vec![Some((5e6, 0.45))], &[], 1e-5, Span::default()).unwrap()
     }
 
     // LIGGGHTS 3.8.0, check/timestep/gran, 12 printed digits: 15 mm at 1 m/s, also with a surface at 3 m/s; 5 mm at 0.1 m/s.
@@ -232,6 +244,6 @@ mod tests {
         assert!(text.contains("Rayleigh") && !text.contains("Hertz") && text.contains("skin"), "{text}");
         // Without a material there is nothing to compare with.
         let b = scene(0.01, 1.0);
-        assert!(fix.parts(&b.world, &vec![None], 1.0, Span::default()).is_err());
+        assert!(fix.parts(&b.world, &vec![None], &[], 1.0, Span::default()).is_err());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::words::Ruled;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_contact::{Arm, Granular, Heat, Model, Rolling, Twisting};
+use perigrain_contact::{Arm, Cohesion, Granular, Heat, Model, Rolling, Twisting};
 use perigrain_pairs::GRANULAR_RULES;
 use perigrain_styles::words::{At, OneType, Words};
 use perigrain_world::World;
@@ -26,6 +26,7 @@ enum Section {
     Tangential,
     Rolling,
     Twisting,
+    Cohesion,
     Heat,
 }
 
@@ -95,6 +96,9 @@ impl Lent {
         }
         if !has(Section::Twisting) {
             law.twisting = Twisting::None;
+        }
+        if !has(Section::Cohesion) {
+            law.cohesion = Cohesion::None;
         }
         if !has(Section::Heat) {
             law.heat = Heat::None;
