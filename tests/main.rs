@@ -68,6 +68,8 @@ mod statics;
 mod strangers;
 #[path = "stress/main.rs"]
 mod stress;
+#[path = "surfaces/main.rs"]
+mod surfaces;
 mod sweep;
 mod swinging;
 mod terminal;

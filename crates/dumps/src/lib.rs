@@ -8,6 +8,7 @@ mod base;
 mod columns;
 mod forms;
 mod image;
+mod legacy;
 mod local;
 mod mesh;
 mod movie;

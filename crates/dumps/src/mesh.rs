@@ -150,7 +150,7 @@ fn declared(
         }
         .into());
     }
-    let ids = ids.into_iter().map(|word| word.text).collect();
+    let ids = ids.into_iter().map(|word| Key::new(&word.text)).collect();
     Ok(Box::new(Declared { base, fields, ids }))
 }
 
@@ -159,7 +159,7 @@ struct Declared {
     base: Base,
     /// Values of triangles; none in STL files.
     fields: Option<Vec<Field>>,
-    ids: Vec<String>,
+    ids: Vec<Key<MeshSurface>>,
 }
 
 /// Refuses keywords that other dumps have.
@@ -221,7 +221,7 @@ impl Declared {
             named.into_iter().for_each(|(_, surface)| add_faces(w, surface, &mut faces));
         }
         for id in &self.ids {
-            let Some(surface) = all.look_up(id) else {
+            let Some(surface) = all.get(*id) else {
                 return fail(Code::UNKNOWN_NAME, None, format!("surface `{id}` is gone"));
             };
             add_faces(w, surface, &mut faces);

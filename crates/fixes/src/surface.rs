@@ -47,8 +47,9 @@ impl Style for Surface {
                    `servo/integrate stop` holds the surface.\n\n\
                    `wear finnie K` adds for each contact 2 K f |F| |v| Δt/area to its triangle while the grain comes \
                    nearer: f = sin 2g − 3 sin² g for tan g < 1/3, else cos² g/3, g the angle between the velocity of \
-                   the centre and the face.\n\n\
-                   Global vector: force (1–3) and torque (4–6) of grains on the surface, and the point about which the \
+                   the centre and the face (Finnie; LIGGGHTS has 0.33333 for 1/3).\n\n\
+                   Global vector: force (1–3) and torque (4–6) of grains on the surface, each force at the point of the \
+                   surface nearest to the grain, and the point about which the \
                    torque counts where it is now (7–9): `about`, or the `com` of a servo. The group means nothing.",
             example: "fix belt all surface conveyor.stl type 1 scale 0.001 shift 0 0 -0.0025 speed -4.5 0 0\n\
                       fix wall grains wall/mesh granular hertz/material 5.0e7 0.7 0.3 tangential mindlin NULL 1.0 0.5 of \

@@ -36,7 +36,9 @@ pub fn ops(id: &str, servo: Option<&Servo>, cx: &mut dyn SealCx) -> Result<Vec<B
         names.push(Servo::key(wall).text());
     }
     let slot = cx.slot(&format!("f_{id}"));
-    let access = Needs::new().read(RADIUS | SLOTS).write(MEMO | SLOTS).only(&names);
+    let access = Needs::new().write(MEMO | SLOTS).only(&names);
+    let access =
+        if servo.as_ref().is_some_and(servo::Running::sees_radii) { access.read(RADIUS) } else { access };
     let running = Running { surface, movers, servo, slot };
     let op = StepOp::new(format!("fix {id} surface"), Stage::PreForce, access, move |w, t| running.run(w, t));
     Ok(vec![op.boxed()])

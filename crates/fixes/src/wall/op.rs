@@ -491,9 +491,11 @@ impl Op for WallOp {
             .add(F | TORQUE)
             .write(WALL_CONTACTS | FACTS | SLOTS);
         let needs = match self.surface.shares() {
-            true => needs.write(MEMO).keep(field::COLUMNS).read(KIND),
+            true => needs.write(MEMO).keep(field::COLUMNS),
             false => needs.keep(MEMO | field::COLUMNS),
         };
+        let by_kind = self.surface.shares() || self.parts.iter().any(|part| part.kinds.is_some());
+        let needs = if by_kind { needs.read(KIND) } else { needs };
         About { collective: true, ..About::new(&self.name, Stage::PostForce, needs) }
     }
 

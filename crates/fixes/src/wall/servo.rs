@@ -265,6 +265,11 @@ impl State {
 }
 
 impl Running {
+    /// Whether its speed depends on the radii of grains.
+    pub fn sees_radii(&self) -> bool {
+        self.servo.ratio.is_some()
+    }
+
     /// Moves on by a step; returns the state before and after it.
     ///
     /// # Errors

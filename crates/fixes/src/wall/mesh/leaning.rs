@@ -97,9 +97,9 @@ impl One {
         let mut worn = vec![];
         for (touch, wrench) in contacts.iter().filter(|(touch, _)| own.contains(&touch.near.part)) {
             let (i, part) = (touch.grain as usize, touch.near.part - self.first);
-            let arm = sub(w.particles.x[i], about);
+            let foot = sub(w.particles.x[i], scale(touch.near.distance, touch.near.normal));
             force = sub(force, wrench.force);
-            torque = sub(torque, add(wrench.torque_i, cross(arm, wrench.force)));
+            torque = sub(torque, cross(sub(foot, about), wrench.force));
             touched.push(f64::from(part));
             touched.extend(wrench.force.map(|f| -f));
             if let (Some(coefficients), false) = (&self.surface.wear, t.setup) {
