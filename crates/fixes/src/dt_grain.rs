@@ -135,7 +135,7 @@ impl Fix for Declared {
         let materials: Materials = (1..=types).map(|kind| cx.material(kind)).collect();
         let slot = cx.slot(&format!("f_{}", self.id));
         cx.world().slots.get_mut(slot).vector.resize(3, 0.0);
-        let needs = Needs::new().read(V | RADIUS | MASS | MASK | KIND | FACTS).write(SLOTS);
+        let needs = Needs::new().read(V | RADIUS | MASS | MASK | KIND).write(SLOTS | FACTS);
         let (me, when) = (self.clone(), When::Every(self.every));
         let mut warned = false;
         let look = move |w: &mut World, t: &Tick| {
