@@ -56,7 +56,10 @@ fn a_region_is_filled_to_a_number_mass_or_share() {
     assert!((260.0..=261.0).contains(&n), "{n}");
     // LIGGGHTS finds places for 242 of 1088 in 200 attempts each.
     let (text, [n, _]) = packed(MASS, "share 0.7 inside yes");
-    assert!((200.0..=280.0).contains(&n) && text.contains("found no place in 200 attempts each, from step 1"), "{n} {text}");
+    assert!(
+        (200.0..=280.0).contains(&n) && text.contains("found no place in 200 attempts each, from step 1"),
+        "{n} {text}"
+    );
 }
 
 // The bed of LIGGGHTS' tutorial `packing`: 0.25 of 0.1 x 0.1 x 0.15 m³ are 337.256 grains, 337 or 338 (LIGGGHTS 338); they grow by
@@ -179,7 +182,9 @@ fn grains_fly_to_the_face_and_pass_it_with_their_own_velocity() {
         let n = 5.0;
         let later = at(last + 5);
         let fallen = vz * n * dt - g * dt * dt * n * (n - 1.0) / 2.0;
-        assert!((later[5] - (vz - g * dt * (n - 0.5))).abs() < 1e-12 && (later[2] - z - fallen).abs() < 1e-12);
+        assert!(
+            (later[5] - (vz - g * dt * (n - 0.5))).abs() < 1e-12 && (later[2] - z - fallen).abs() < 1e-12
+        );
         assert!((later[7] / (-mass * g) - 1.0).abs() < 1e-12, "{later:?}");
     }
     assert!(least >= 0.002 && most <= 0.048 && most - least > 0.02, "{least} {most}");
@@ -232,6 +237,8 @@ fn mistakes_are_named() {
         let text = refused(&format!("fix ins all insert {words}"));
         assert!(text.contains(what), "{words}: {text}");
     }
-    let text = refused("region out block -.06 .06 -.06 .06 -.06 .06 units box side out\nfix ins all insert m pack region out number 5");
+    let text = refused(
+        "region out block -.06 .06 -.06 .06 -.06 .06 units box side out\nfix ins all insert m pack region out number 5",
+    );
     assert!(text.contains("no box around it"), "{text}");
 }

@@ -2,7 +2,7 @@
 
 use super::Inserting;
 use perigrain_base::diag::Result;
-use perigrain_base::math::vec3::{Vec3, add, scale, sub};
+use perigrain_base::math::vec3::{Vec3, add, length, scale, sub};
 use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way};
 use perigrain_world::field::{BOX, F, LISTS, MEMO, OMEGA, TAG, TORQUE, TRAVEL, V, X};
 use perigrain_world::{Numbers, World};
@@ -36,9 +36,11 @@ impl Held {
         [f64::from(self.tag), x, y, z, self.left, u, v, w, a, b, c]
     }
 
-    /// Adds grains to those on their way; their ids are larger.
-    pub fn add(w: &mut World, key: Numbers, more: impl Iterator<Item = Held>) {
+    /// Adds grains to those on their way; their ids begin with `first`, which a grain that is gone may have had.
+    pub fn add(w: &mut World, key: Numbers, first: u32, more: impl Iterator<Item = Held>) {
         let rows = w.memo.get_or(key, Vec::new);
+        let before = rows.chunks_exact(NUMBERS).take_while(|row| (row[0] as u32) < first).count();
+        rows.truncate(before * NUMBERS);
         more.for_each(|held| rows.extend(held.row()));
     }
 }
@@ -81,8 +83,9 @@ impl Flight {
         w.memo.get(self.key).is_none_or(Vec::is_empty)
     }
 
-    /// Finds the grains in storage, where particles have come, gone or changed places; those that are gone are forgotten.
-    fn find(&mut self, w: &mut World) {
+    /// Finds the grains in storage, where particles have come, gone or changed places; those that are gone are forgotten, and when a run
+    /// begins also those that have been put elsewhere or have other ids now.
+    fn find(&mut self, w: &mut World, t: &Tick) {
         let now = [w.rebuild.roster, w.rebuild.places];
         let Some(held) = w.memo.get(self.key) else { return };
         if self.stands == Some(now) && self.rows.len() * NUMBERS == held.len() {
@@ -100,6 +103,16 @@ impl Flight {
                 self.rows[k] = Some(i);
             }
         }
+        if t.setup {
+            let stands = |row: &[f64], i: usize| {
+                let grain = Held::of(row);
+                let off = sub(self.place(&grain), w.particles.x[i]);
+                let off = w.domain.as_ref().map_or(off, |domain| domain.minimum_image(off));
+                length(off) <= 2.0 * self.speed * t.dt
+            };
+            let places = held.chunks_exact(NUMBERS).zip(&self.rows);
+            self.rows = places.map(|(row, place)| place.filter(|i| stands(row, *i))).collect();
+        }
         if self.rows.contains(&None) {
             let kept = held.chunks_exact(NUMBERS).zip(&self.rows).filter(|(_, row)| row.is_some());
             held = kept.flat_map(|(held, _)| held.iter().copied()).collect();
@@ -107,6 +120,11 @@ impl Flight {
             w.memo.insert(self.key, held);
         }
         self.stands = Some(now);
+    }
+
+    /// Where a grain is by its way.
+    fn place(&self, grain: &Held) -> Vec3 {
+        add(grain.foot, scale(-grain.left, self.normal))
     }
 
     /// Brings each grain to its place at the end of this step.
@@ -122,8 +140,8 @@ impl Flight {
             if !own(w, i) {
                 continue;
             }
+            let place = self.place(&grain);
             let x = &mut w.particles.x[i];
-            let place = add(grain.foot, scale(-grain.left, self.normal));
             let off = sub(place, *x);
             let near = domain.minimum_image(off);
             // Where it has been wrapped since, it flies as that image.
@@ -169,7 +187,9 @@ impl Op for Flight {
                 reports_travel: true,
                 ..About::new(&self.name, Stage::PostIntegrate, needs.write(X).keep(TRAVEL))
             },
-            Part::Holds => About::new(&self.name, Stage::PostForce, needs.write(V | F | TORQUE | OMEGA)),
+            Part::Holds => {
+                About::new(&self.name, Stage::PostForce, needs.read(X).write(V | F | TORQUE | OMEGA))
+            }
         }
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
@@ -182,7 +202,7 @@ impl Op for Flight {
         if t.unchanged || self.is_empty(w) {
             return Ok(());
         }
-        self.find(w);
+        self.find(w, t);
         match self.part {
             Part::Flies => self.fly(w, t),
             Part::Holds => {

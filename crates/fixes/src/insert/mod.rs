@@ -266,6 +266,3 @@ impl Fix for Inserting {
         Shape { scalar: true, vector: 2, ..Shape::default() }
     }
 }
-
-#[cfg(test)]
-mod tests;

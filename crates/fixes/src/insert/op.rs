@@ -114,12 +114,16 @@ impl Source {
         let mut crowd = fix.crowd(w, domain, self.packet, n);
         let (mut made, mut left) = (Batch::default(), n.saturating_mul(fix.tries));
         let counts = fix.mixture.counts(n, stream);
+        let region = matches!(fix.place, Place::Region(_));
         for (kind, count) in fix.mixture.kinds.iter().zip(counts) {
+            // Of this size none fits into the region, be it empty.
+            let mut never = false;
             for _ in 0..count {
                 let mut found = None;
-                while left > 0 && found.is_none() {
+                while left > 0 && found.is_none() && !never {
                     left -= 1;
                     let drawn = fix.draw(self.packet, kind.radius, stream, &mut self.near);
+                    never = region && drawn.is_none();
                     found = drawn.filter(|(x, _)| !fix.overlap || crowd.fits(*x, kind.radius));
                 }
                 let Some((x, foot)) = found else {
@@ -138,7 +142,7 @@ impl Source {
 
     /// Puts the grains into the scene; those of a stream are held.
     fn admit(&self, w: &mut World, made: &Batch) -> Result<()> {
-        let (first, tag) = (w.n(), w.particles.last_tag() + 1);
+        let (first, tag) = (w.n(), w.particles.last_tag().saturating_add(1));
         admit(w, self.fix.group, tag, &made.grains)?;
         let omega = self.fix.omega;
         if let (Some(packet), Place::Face(face)) = (self.packet, &self.fix.place) {
@@ -152,7 +156,7 @@ impl Source {
                 v: grain.v,
                 omega,
             });
-            Held::add(w, self.held, held);
+            Held::add(w, self.held, tag, held);
         } else {
             w.particles.omega[first..].fill(omega);
         }

@@ -3,7 +3,7 @@
 use perigrain_base::math::rng::ParkMiller;
 use perigrain_world::{Numbers, World};
 
-/// What has been inserted, and when it goes on.
+/// What has been inserted, and when it inserts next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// How many grains.
