@@ -9,6 +9,7 @@ mod brief;
 mod causes;
 mod checking;
 mod commands;
+mod dialect;
 mod embed;
 mod ending;
 mod files;
@@ -150,6 +151,8 @@ pub struct Session {
     scenes: u64,
     /// Requests from outside, each text once.
     requests: std::collections::BTreeMap<String, FileId>,
+    /// Whose words the deck has.
+    dialect: dialect::Dialect,
 }
 
 /// No progress shown.
@@ -209,7 +212,9 @@ impl Session {
             made: 0,
             scenes: 0,
             requests: Default::default(),
+            dialect: Default::default(),
         };
+        s.dialect.choose(s.options.compat, false);
         s.vars.set_partition(s.options.partition.clone());
         for (name, values) in s.options.vars.clone() {
             let (values, odd): (Vec<_>, Vec<_>) = values.iter().map(|v| plain_value(v)).unzip();
@@ -415,6 +420,7 @@ impl Session {
             return self.cut_short(&stop, line, cmd.span, &problems).map(|()| None);
         }
         outcome.map_err(|e| {
+            let e = self.with_dialect(e, cmd);
             let placed = belongs::add_places(self.sources.adopt(e), cmd, &self.graph.tables);
             checking::with_origins(placed.at(cmd.span), cmd)
         })
@@ -466,6 +472,15 @@ impl Session {
         if !["print", "log", "echo", "info"].contains(&name) {
             script.changed();
         }
+        match self.translated(cmd)? {
+            None => self.carry_out(script, cmd),
+            Some(lines) => self.carry_out_all(script, &lines),
+        }
+    }
+
+    /// Carries out a native line.
+    fn carry_out(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
+        let name = cmd.name.text.as_str();
         if let Some(carry) = table::own(name) {
             return carry(self, script, cmd);
         }

@@ -99,6 +99,7 @@ const BOOK: [&str; 2] = [
      - [Benchmarks](benchmarks.md)\n\
      - [Stability](stability.md)\n\
      - [Coming from LAMMPS](coming-from-lammps.md)\n\
+     - [Coming from LIGGGHTS](coming-from-liggghts.md)\n\
      - [Untrusted decks](safe.md)\n\
      - [How fast, and what limits it](speed.md)\n\
      - [Forecast on many machines](scaling.md)\n\

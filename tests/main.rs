@@ -32,11 +32,14 @@ mod geometry;
 mod grains;
 mod heat;
 mod impact;
+mod inserting;
 #[path = "installed_decks/main.rs"]
 mod installed_decks;
 mod interrupts;
 #[path = "lammps.rs"]
 mod lammps;
+#[path = "liggghts/main.rs"]
+mod liggghts;
 mod lsp;
 mod meshes;
 mod partitions;
@@ -65,6 +68,8 @@ mod statics;
 mod strangers;
 #[path = "stress/main.rs"]
 mod stress;
+#[path = "surfaces/main.rs"]
+mod surfaces;
 mod sweep;
 mod swinging;
 mod terminal;

@@ -25,6 +25,8 @@ const ARROWS: &[(&str, &[&str])] = &[
     // Equilibria of whole bodies, and the limit of their step.
     ("statics", &["base", "bonded"]),
     ("lang", &["base"]),
+    // Another program's decks as native lines: words alone.
+    ("liggghts", &["base", "lang"]),
     ("mesh", &["base"]),
     ("neigh", &["base"]),
     ("peri", &["base", "constitutive"]),
@@ -61,6 +63,7 @@ const BY_STRING: &[(&str, &str)] = &[
     ("by_name", "slots are found by name while plans are made; steps have their ids"),
     ("files", "promises are kept while a deck is checked, where no step is made"),
     ("materials", "words of a line that is being read"),
+    ("mixtures", "words of a line that is being read; fixes hold the mixture itself"),
     ("templates", "words of a line that is being read; fixes hold the molecules themselves"),
 ];
 

@@ -92,6 +92,7 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("settorque_atom.rs", "regions", "only with `region`"),
     ("efield.rs", "regions", "only with `region`"),
     ("heat/peri.rs", "facts", "only with edges"),
+    ("insert/op.rs", "mass", "only where a mass is filled up"),
     ("peri_strength.rs", "id", "only where a factor is refused"),
 ];
 
@@ -100,7 +101,7 @@ const OWN: [&str; 1] = ["fix peri/strength"];
 
 /// The ops that put particles elsewhere, by file. `tests/strangers/movers.rs` holds what each does to whatever has a direction: an op that
 /// joins this list has its lines there.
-const MOVERS: [&str; 9] = [
+const MOVERS: [&str; 10] = [
     "/nve.rs",
     "/nve_sphere.rs",
     "/nve_limit.rs",
@@ -110,6 +111,7 @@ const MOVERS: [&str; 9] = [
     "/recenter.rs",
     "/deform/op.rs",
     "/wall_reflect.rs",
+    "/insert/flight.rs",
 ];
 
 /// Examples that end after a few steps of each run; others wait for something that takes its time.

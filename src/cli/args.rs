@@ -208,16 +208,21 @@ pub const SWITCHES: &[Switch] = &[
         o.view = Some(v.port()?);
         Ok(())
     }),
-    switch(&["-compat"], "lammps[/2025|/2026]", "LAMMPS' numbers also where LAMMPS is wrong", |o, v| {
-        let word = v.one("lammps")?;
-        let Some(compat) = Compat::from_name(&word).filter(|compat| compat.lammps()) else {
-            let message = format!("perigrain cannot imitate `{word}`");
-            let help = "write `-compat lammps/2025` for LAMMPS 22Jul2025, or `-compat lammps` (`lammps/2026`) with what has been mended since";
-            return Err(Usage::new(message).help(help));
-        };
-        o.compat = compat;
-        Ok(())
-    }),
+    switch(
+        &["-compat"],
+        "lammps[/2025|/2026]|liggghts",
+        "LAMMPS' numbers also where LAMMPS is wrong, or the words of LIGGGHTS",
+        |o, v| {
+            let word = v.one("lammps or liggghts")?;
+            let Some(compat) = Compat::from_name(&word).filter(|compat| compat.is_chosen()) else {
+                let message = format!("perigrain cannot imitate `{word}`");
+                let help = "write `-compat lammps/2025` for LAMMPS 22Jul2025, or `-compat lammps` (`lammps/2026`) with what has been mended since; `-compat liggghts` reads the words of LIGGGHTS";
+                return Err(Usage::new(message).help(help));
+            };
+            o.compat = compat;
+            Ok(())
+        },
+    ),
     switch(&["-suffix", "-sf"], "omp", "for LAMMPS' command lines: every style has threads here", |_, v| {
         match v.one("omp")?.as_str() {
             "omp" | "off" => Ok(()),

@@ -21,6 +21,7 @@ mod signals;
 mod starters;
 mod sweeping;
 pub mod tasks;
+mod translating;
 pub mod verifying;
 mod version;
 mod viewing;
@@ -94,6 +95,7 @@ fn perform(task: Task) -> Result<u8, Usage> {
         Task::Verify(wanted) => return verifying::verify(&wanted),
         Task::Lsp => return Ok(serve()),
         Task::Format(wanted) => return formatting::perform(&wanted),
+        Task::Translate(wanted) => return translating::perform(&wanted),
         Task::Check { decks, json } => return Ok(checking::check(&decks, json)),
         Task::Plan { options, dot: true, .. } => return Ok(deck::draw(&options)),
         Task::Plan { options, measure: true, .. } => return ranks::execute(&options, Mode::Measure),

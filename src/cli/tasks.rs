@@ -2,7 +2,7 @@
 
 use super::args::{self, Deck, Options, SWITCHES, Usage};
 use super::sweeping::args::Request;
-use super::{benching, checking, examples, formatting, reporting, starters, verifying};
+use super::{benching, checking, examples, formatting, reporting, starters, translating, verifying};
 use clap::{CommandFactory, Parser, ValueHint};
 use clap_complete::Shell;
 use perigrain_base::diag::nearest;
@@ -26,6 +26,8 @@ pub enum Task {
     },
     /// Lay decks out anew.
     Format(formatting::Wanted),
+    /// Rewrite a deck of LIGGGHTS.
+    Translate(translating::Wanted),
     /// Answer an editor.
     Lsp,
     /// Print a deck's step plan.
@@ -100,6 +102,8 @@ enum Sub {
     },
     /// Lay decks out anew: blanks, columns, comments and empty lines, never words
     Fmt(formatting::Wanted),
+    /// Write a deck of LIGGGHTS as a native one
+    Translate(translating::Wanted),
     /// Answer an editor about decks, as a language server over standard input and output
     Lsp {
         /// The streams, in the words of some editors; there are no others
@@ -336,6 +340,7 @@ fn subcommand(mut words: Vec<String>) -> Result<Task, Usage> {
             Task::Check { decks: checking::each(&options, decks), json }
         }
         Sub::Fmt(wanted) => Task::Format(wanted),
+        Sub::Translate(wanted) => Task::Translate(wanted),
         Sub::Lsp { stdio: _ } => Task::Lsp,
         Sub::Plan { measure, dot, rest } => Task::Plan { options: args::parse(rest)?, measure, dot },
         Sub::Ranks { rest } => Task::Ranks(args::parse(rest)?),

@@ -15,6 +15,10 @@ pub(super) struct Refused {
     particles: bool,
     /// And it is LAMMPS', so that much of what goes with it is so, too.
     particles_of_lammps: bool,
+    /// And it is one of LIGGGHTS, so that all of the deck is about other particles.
+    foreign: bool,
+    /// What words of LIGGGHTS without counterpart were about.
+    subjects: BTreeSet<String>,
 }
 
 /// Commands that name what they make in their first word.
@@ -54,6 +58,8 @@ impl Refused {
     /// Where none is left, the line is a consequence.
     pub fn causes(&mut self, line: &str, problems: Diagnostics) -> Diagnostics {
         let elsewhere = problems.0.iter().any(|d| d.code == Code::NOT_SUPPORTED);
+        let foreign = problems.0.iter().any(|d| d.code == Code::NO_COUNTERPART);
+        let subjects: Vec<String> = problems.0.iter().filter_map(subject).collect();
         let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
         let mut words = line.split_whitespace();
         let (command, first) = (words.next().unwrap_or(""), words.next());
@@ -61,7 +67,9 @@ impl Refused {
         if command == "atom_style" {
             self.particles = true;
             self.particles_of_lammps |= elsewhere;
+            self.foreign |= foreign;
         }
+        self.subjects.extend(subjects);
         if NAMING.contains(&command) {
             self.names.extend(first.map(String::from));
         } else if !HARMLESS.contains(&command) {
@@ -81,6 +89,9 @@ impl Refused {
     }
 
     fn explains(&self, d: &Diagnostic) -> bool {
+        if self.foreign || subject(d).is_some_and(|what| self.subjects.contains(&what)) {
+            return true;
+        }
         match d.code {
             Code::UNKNOWN_NAME if self.table && d.message.starts_with("no thermo column") => true,
             code if code.is_unknown_name() || code == Code::DUPLICATE_NAME => {
@@ -88,10 +99,16 @@ impl Refused {
             }
             Code::WRONG_ORDER | Code::INCOMPLETE => self.scene,
             Code::CONFLICT | Code::NEVER_SET => self.particles,
-            Code::NOT_SUPPORTED => self.particles_of_lammps,
+            Code::NOT_SUPPORTED | Code::NO_COUNTERPART => self.particles_of_lammps,
             _ => false,
         }
     }
+}
+
+/// What a word of LIGGGHTS without counterpart is about: `couple/cfd`, a coupling to another program, is …
+fn subject(d: &Diagnostic) -> Option<String> {
+    let about = d.message.split(", ").nth(1).filter(|_| d.code == Code::NO_COUNTERPART)?;
+    Some(about.to_string())
 }
 
 #[cfg(test)]

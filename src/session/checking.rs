@@ -109,6 +109,8 @@ impl Session {
             return;
         };
         let types = self.world.types as u16;
+        let told = self.checking() && self.dialect.lawless;
+        let types = if told { 0 } else { types };
         let missing: Vec<String> = (1..=types)
             .flat_map(|i| (i..=types).map(move |j| (i, j)))
             .filter(|&(i, j)| !node.pair.covers(i, j))
@@ -158,11 +160,11 @@ impl Session {
         }
     }
 
-    /// Whether every particle there is comes from a fix pour, which gives it a diameter and a density.
+    /// Whether every particle there is comes from a fix pour or insert, which gives it a diameter and a density.
     fn all_are_poured(&self) -> bool {
         let pours = |text: &str| {
             let mut words = text.split_whitespace();
-            words.next() == Some("fix") && words.nth(2) == Some("pour")
+            words.next() == Some("fix") && matches!(words.nth(2), Some("pour" | "insert"))
         };
         !self.settled("particles") && self.graph.lines.nodes().iter().any(|n| pours(&n.text))
     }

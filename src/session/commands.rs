@@ -152,6 +152,7 @@ impl Session {
     pub(super) fn set_compat(&mut self, compat: Compat) {
         self.options.compat = compat;
         self.world.settings.compat = compat;
+        self.dialect.choose(compat, true);
         let lammps = self.world.settings.lammps();
         self.world.regions.values_mut().for_each(|region| region.open_holds_all(lammps));
         self.world.touch();

@@ -49,6 +49,7 @@ pub struct Snapshot {
     graph: Graph,
     world: Arc<World>,
     compat: Compat,
+    dialect: super::dialect::Dialect,
     ran: bool,
     typed: Option<Script>,
     timer: super::timer::Timer,
@@ -120,6 +121,7 @@ impl Session {
             graph,
             world,
             options,
+            dialect,
             ran,
             typed,
             timer,
@@ -163,6 +165,7 @@ impl Session {
             graph: graph.clone(),
             world: shared.unwrap_or_else(|| Arc::new(world.clone())),
             compat: options.compat,
+            dialect: dialect.clone(),
             ran: *ran,
             typed: typed.clone(),
             timer: *timer,
@@ -181,6 +184,7 @@ impl Session {
         self.seen_names = self.vars.names_version();
         self.world = World::clone(&s.world);
         self.options.compat = s.compat;
+        self.dialect = s.dialect.clone();
         self.ran = s.ran;
         self.checked_step = None;
         self.typed.clone_from(&s.typed);

@@ -17,7 +17,7 @@ use perigrain_base::gate;
 use perigrain_fixes::{AtRest, Minimizing};
 use perigrain_lang::{Args, Command, Script, Word};
 use perigrain_output::thermo::{Finish, Section};
-use perigrain_pairs::{PLASTIC_GRAIN, TILES};
+use perigrain_pairs::{GRANULAR_RULES, PLASTIC_GRAIN, TILES};
 use perigrain_plan::run::{Pace, verlet};
 use perigrain_plan::{OpClass, Stage, StepPlan, When, explain};
 use perigrain_styles::Reading;
@@ -226,6 +226,7 @@ impl Session {
         self.graph.computes.iter().for_each(|c| c.compute.particles_joined(&mut self.world));
         self.world.bonds.lost = self.graph.thermo.lost_bond;
         self.world.facts.remove(*PLASTIC_GRAIN);
+        self.world.facts.remove(*GRANULAR_RULES);
         let mut s = Sealer::new(&mut self.world, &self.graph, vars);
         s.log = self.options.log.clone();
         s.at_rest = pass == Pass::Statics;
@@ -267,7 +268,9 @@ impl Session {
             _ => true,
         });
         let mut marks = ledger::Marks::default();
-        for (f, _) in all.collect::<Vec<_>>() {
+        let mut all: Vec<_> = all.collect();
+        all.sort_by_key(|(_, facts)| facts.acts_last);
+        for (f, _) in all {
             s.at_fix(f.span, f.level, f.group.bit());
             let ops = f.fix.ops(&mut s)?;
             let changed = if booked { ledger::changes(&ops) } else { [false; 2] };

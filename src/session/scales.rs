@@ -96,7 +96,7 @@ impl Session {
             return;
         }
         let taken = w.particles.mask.iter().fold(0, |all, mask| all | mask);
-        let sources = ["pour", "deposit"];
+        let sources = ["pour", "deposit", "insert"];
         let fills = |group| self.graph.fixes.iter().any(|f| sources.contains(&f.style) && f.group == group);
         for f in &self.graph.fixes {
             let acts = !sources.contains(&f.style) && !WITHOUT_GROUP.iter().any(|s| f.style.starts_with(s));

@@ -94,7 +94,7 @@ fn words(settings: &Settings) -> String {
         (settings.series, "series"),
     ];
     let vars = settings.vars.iter().map(|(name, values)| format!("-var {name} {}", values.join(" ")));
-    let compat = settings.compat.lammps().then(|| format!("-compat {}", settings.compat.name()));
+    let compat = settings.compat.is_chosen().then(|| format!("-compat {}", settings.compat.name()));
     let on = switches.into_iter().filter(|(on, _)| *on).map(|(_, word)| word.to_owned());
     let lammps = settings.lammps.iter().map(|path| format!("-lammps {}", path.display()));
     vars.chain(compat).chain(on).chain(lammps).collect::<Vec<_>>().join(" ")

@@ -3,6 +3,7 @@
 //! `golden/NAME.txt` holds the thermo table that LAMMPS 22Jul2025 prints for `NAME.in`, 15 digits per number.
 
 mod continuum;
+mod pairs;
 #[path = "../common/thermo.rs"]
 mod thermo;
 

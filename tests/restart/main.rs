@@ -66,7 +66,7 @@ fn a_run_cut_in_two_has_the_bits_of_one() {
         // Of rain: the streams of random numbers.
         let streams = !whole.memo.is_empty();
         let at_stake = match s.name {
-            "rain" => streams,
+            "rain" | "stream" => streams,
             // Of 184 bonds some are gone, and some were made between ends that stand otherwise.
             name if name.starts_with("beams") => {
                 (5..180).contains(&whole.bonds.len()) && !whole.bonds.turned.is_empty()

@@ -107,6 +107,20 @@ pub const RAIN_AGAIN: &str = "region slot block 0 5 0 5 1.5 6 units box\nregion 
     thermo_style custom step time atoms ke c_er c_away[4] f_4 f_5 f_6\n\
     thermo_modify format float %24.17g norm no\nthermo 5\n";
 
+/// Grains that stream out of a face, some of them on their way to it, and others that fill a region up.
+pub const STREAM_AGAIN: &str = "region slot block 0 5 0 5 0.5 3 units box\n\
+    pair_style gran/hooke/history 4000.0 NULL 50.0 NULL 0.5 0\npair_coeff * *\n\
+    neighbor 0.3 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\ngroup none empty\n\
+    fix 3 all wall/gran hooke/history 4000.0 NULL 50.0 NULL 0.5 0 zplane 0.0 NULL\n\
+    fix lid none wall/gran hooke 4000.0 NULL 50.0 NULL 0.5 0 zplane 9.0 NULL\n\
+    mixture m mass 4711 sphere 1 0.7 1 0.4 sphere 2 1.0 1 0.6\n\
+    fix 4 all insert m stream face lid number 60 rate 20 length 3 vel 0.5 0 -4 gaussian 0.3 0.3 0.3 omega 0 1 0\n\
+    fix 5 all insert m pack region slot number 9 every 60 vel 0 0 -1 uniform 1 1 0 seed 99\n\
+    fix 2 all gravity 1.0 vector 0 0 -1\n\
+    timestep 0.005\ncompute er all erotate/sphere\n\
+    thermo_style custom step time atoms ke c_er f_4 f_4[1] f_4[2] f_5[1] f_5[2]\n\
+    thermo_modify format float %24.17g norm no\nthermo 5\n";
+
 /// A grain that hits a peridynamic plate.
 pub const IMPACT: &str = "units si\natom_style hybrid sphere peri\nboundary s s s\nlattice sc 0.001\n\
     region world block -0.006 0.006 -0.006 0.006 -0.003 0.009 units box\ncreate_box 2 world\n\
@@ -221,7 +235,7 @@ pub const UNLIKE_AGAIN: &str = "pair_style peri/lps\npair_coeff * * material gla
     compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
-pub const SCENES: [Scene; 29] = [
+pub const SCENES: [Scene; 30] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "scattered", make: SCATTERED, again: BLOCK_AGAIN, steps: 60, list: false },
@@ -248,6 +262,7 @@ pub const SCENES: [Scene; 29] = [
     Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },
     Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },
     Scene { name: "rain", make: RAIN, again: RAIN_AGAIN, steps: 424, list: false },
+    Scene { name: "stream", make: RAIN, again: STREAM_AGAIN, steps: 300, list: false },
     Scene { name: "beams", make: BEAMS, again: BEAMS_AGAIN, steps: 400, list: false },
     Scene { name: "beams as LAMMPS has them", make: BEAMS, again: ROTATIONAL_AGAIN, steps: 300, list: false },
     Scene { name: "impact", make: IMPACT, again: IMPACT_AGAIN, steps: 60, list: false },

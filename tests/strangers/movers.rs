@@ -235,6 +235,7 @@ const MOVERS: &[(&str, How, &str)] = &[
         How::Made,
         "group new empty\nfix 3 all gravity 1 vector 0 0 -1\nfix 2 new pour 1 0 4711 region up mol three\nrun 2",
     ),
+    ("insert", How::Each, ""),
     ("nve", How::Each, ""),
     ("nve/sphere", How::Each, ""),
     ("nve/bpm/sphere", How::Each, ""),
@@ -288,6 +289,7 @@ const STAY: &[&str] = &[
     "angle_style",
     "angle_coeff",
     "molecule",
+    "mixture",
 ];
 
 fn mover(name: &str) -> bool {

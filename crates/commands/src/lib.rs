@@ -25,6 +25,7 @@ mod mass;
 mod material;
 mod min_modify;
 mod min_style;
+mod mixture;
 mod molecule;
 pub mod momentum;
 mod neigh_modify;
@@ -105,4 +106,5 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &angle_style::AngleStyleCommand,
     &angle_style::AngleCoeff,
     &molecule::Molecule,
+    &mixture::MixtureCommand,
 ];

@@ -231,6 +231,8 @@ mod tests {
         // 4/3 π 1³ · 1000, in LAMMPS' order of products.
         assert_eq!(p.mass, [2235.0, 4.0 * std::f64::consts::PI / 3.0 * 1000.0]);
         assert_eq!((p.volume[0], p.density[0], p.omega[1]), (8.0, 2235.0, [1.0, 2.0, 3.0]));
+        more(&mut w, "set type 2 omegay 7");
+        assert_eq!(w.particles.omega[1], [1.0, 7.0, 3.0]);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::probe::{Interaction, OWN, Probe, Request, look_all};
+use perigrain_styles::probe::{HISTORY, Interaction, OWN, Probe, Request, look_all};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::words::{Alternative, Kind, Syntax, Value, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -13,6 +13,7 @@ use perigrain_world::field::{
     TAG, TRAVEL, V, VOLUME, X, X0,
 };
 use perigrain_world::{GroupId, SlotId, World};
+use std::f64::consts::PI;
 
 /// The style.
 pub struct PairLocal;
@@ -54,10 +55,25 @@ enum Quantity {
     Force,
     ForceAlong(usize),
     Own(usize),
+    /// Component k of a place or velocity of the first or second.
+    Place(usize, usize),
+    Velocity(usize, usize),
+    Id(usize),
+    Crosses,
+    WholeForce(usize),
+    Torque(usize),
+    Overlap,
+    Area,
+    Point(usize),
+    History(usize),
 }
 
 impl Quantity {
-    fn of(self, p: &Interaction) -> f64 {
+    fn of(self, w: &World, p: &Interaction) -> f64 {
+        let particles = &w.particles;
+        let end = |which: usize| [p.i, p.j][which] as usize;
+        let radius = |which: usize| particles.radius.get(end(which)).copied().unwrap_or(0.0);
+        let overlap = || radius(0) + radius(1) - p.distance();
         match self {
             Quantity::Distance => p.distance(),
             Quantity::Along(k) => p.d[k],
@@ -66,11 +82,33 @@ impl Quantity {
             Quantity::Force => p.central() + 0.0,
             Quantity::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
             Quantity::Own(k) => p.own[k],
+            Quantity::Place(0, k) => particles.x[end(0)][k],
+            // Of the image that the first one meets.
+            Quantity::Place(_, k) => particles.x[end(0)][k] - p.d[k],
+            Quantity::Velocity(which, k) => particles.v[end(which)][k],
+            Quantity::Id(which) => f64::from(particles.tag[end(which)]),
+            Quantity::Crosses => {
+                let [a, b] = [0, 1].map(|which| particles.x[end(which)]);
+                let across = |k: usize| (a[k] - b[k] - p.d[k]).abs() > 0.5 * p.distance();
+                f64::from(u8::from((0..3).any(across)))
+            }
+            Quantity::WholeForce(k) => p.force[k],
+            Quantity::Torque(k) => p.torque[k],
+            Quantity::Overlap => overlap(),
+            Quantity::Area => circle(p.distance(), radius(0), radius(1)),
+            Quantity::Point(k) => particles.x[end(0)][k] - p.d[k] * radius(0) / (radius(0) + radius(1)),
+            Quantity::History(k) => p.history[k],
         }
     }
 }
 
-const QUANTITIES: [(&str, Quantity); 9] = [
+/// The area of the circle in which two spheres whose centres are `d` apart meet: π/(4 D²) δ (D + R₁ − R₂)(D − R₁ + R₂)(D + R₁ + R₂).
+fn circle(d: f64, a: f64, b: f64) -> f64 {
+    let heron = (a + b - d).max(0.0) * (d + a - b) * (d - a + b) * (d + a + b);
+    0.25 * PI * heron / (d * d)
+}
+
+const QUANTITIES: [(&str, Quantity); 35] = [
     ("dist", Quantity::Distance),
     ("dx", Quantity::Along(0)),
     ("dy", Quantity::Along(1)),
@@ -80,6 +118,32 @@ const QUANTITIES: [(&str, Quantity); 9] = [
     ("fx", Quantity::ForceAlong(0)),
     ("fy", Quantity::ForceAlong(1)),
     ("fz", Quantity::ForceAlong(2)),
+    ("x1", Quantity::Place(0, 0)),
+    ("y1", Quantity::Place(0, 1)),
+    ("z1", Quantity::Place(0, 2)),
+    ("x2", Quantity::Place(1, 0)),
+    ("y2", Quantity::Place(1, 1)),
+    ("z2", Quantity::Place(1, 2)),
+    ("vx1", Quantity::Velocity(0, 0)),
+    ("vy1", Quantity::Velocity(0, 1)),
+    ("vz1", Quantity::Velocity(0, 2)),
+    ("vx2", Quantity::Velocity(1, 0)),
+    ("vy2", Quantity::Velocity(1, 1)),
+    ("vz2", Quantity::Velocity(1, 2)),
+    ("id1", Quantity::Id(0)),
+    ("id2", Quantity::Id(1)),
+    ("crosses", Quantity::Crosses),
+    ("forcex", Quantity::WholeForce(0)),
+    ("forcey", Quantity::WholeForce(1)),
+    ("forcez", Quantity::WholeForce(2)),
+    ("torquex", Quantity::Torque(0)),
+    ("torquey", Quantity::Torque(1)),
+    ("torquez", Quantity::Torque(2)),
+    ("delta", Quantity::Overlap),
+    ("area", Quantity::Area),
+    ("cx", Quantity::Point(0)),
+    ("cy", Quantity::Point(1)),
+    ("cz", Quantity::Point(2)),
 ];
 
 const NAMES: &[Alternative] = &alternatives(&QUANTITIES);
@@ -90,6 +154,11 @@ impl Value for Quantity {
         let word = args.expect(what)?;
         if let Some((_, v)) = QUANTITIES.iter().find(|v| v.0 == word.text) {
             return Ok(*v);
+        }
+        if let Some(n) = word.text.strip_prefix('h').and_then(|n| n.parse::<usize>().ok())
+            && (1..=HISTORY).contains(&n)
+        {
+            return Ok(Quantity::History(n - 1));
         }
         match word.text.strip_prefix('p').and_then(|n| n.parse::<usize>().ok()) {
             Some(n) if (1..=OWN).contains(&n) => Ok(Quantity::Own(n - 1)),
@@ -109,6 +178,10 @@ impl Value for Quantity {
 struct Line {
     /// `dist`: distance; `dx dy dz`: x_1 − x_2; `force`: force along the line of centres, positive where it pushes apart; `fx fy
     /// fz`: that force on the first; `eng`: energy of the pair, 0 for granular styles as in LAMMPS; `p1` …: the pair style's own.
+    /// Not in LAMMPS: `x1 y1 z1 x2 y2 z2`, `vx1 vy1 vz1 vx2 vy2 vz2`, `id1 id2`: places (of the second the image that meets the first),
+    /// velocities and ids; `crosses`: 1 where they meet across a periodic face; `forcex forcey forcez`, `torquex torquey torquez`: the whole
+    /// force and torque on the first; `delta`: overlap; `area`: of the circle in which the spheres meet; `cx cy cz`: the point that divides the
+    /// line of centres as the radii; `h1` … `h12`: what the contact remembers, the tangential spring first.
     #[word(name = "pN", what = "a value, as `dist`", least = 1)]
     values: Vec<Quantity>,
     #[word(keyword)]
@@ -198,7 +271,7 @@ impl Compute for Declared {
             out.local_cols = me.values.len();
             out.local.clear();
             for p in pairs.iter().filter(|p| of_group(w, me.group, p) && (!me.touching || touches(w, p))) {
-                out.local.extend(me.values.iter().map(|v| v.of(p)));
+                out.local.extend(me.values.iter().map(|v| v.of(w, p)));
             }
             Ok(())
         }))

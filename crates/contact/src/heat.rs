@@ -1,7 +1,10 @@
 //! Heat conduction through the contact area.
 
+use super::Geometry;
+use super::cohesion::circle;
 use super::normal::geometric;
 use perigrain_base::math::real::Real;
+use std::f64::consts::PI;
 
 /// Heat conduction models.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,6 +17,25 @@ pub enum Heat {
     /// `radius k`: 2 k a, with conductivity k [energy/(time length temperature)] (constriction in a
     /// half-space).
     Radius(f64),
+    /// `contact k`: 2 k √A, A the area of contact. Grains of conductivities k_i and k_j have k = 2 k_i k_j/(k_i + k_j)
+    /// (LIGGGHTS manual, fix heat/gran/conduction).
+    Contact {
+        /// k [energy/(time length temperature)].
+        conductivity: f64,
+        /// A.
+        area: Area,
+    },
+}
+
+/// The area of contact of `heat contact`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Area {
+    /// The circle in which the spheres intersect, after δ is multiplied by this factor.
+    Overlap(f64),
+    /// `projection`: π times the square of the larger radius; on walls the circle.
+    Projection,
+    /// `constant A`.
+    Constant(f64),
 }
 
 impl Heat {
@@ -23,6 +45,7 @@ impl Heat {
             Heat::None => "none",
             Heat::Area(_) => "area",
             Heat::Radius(_) => "radius",
+            Heat::Contact { .. } => "contact",
         }
     }
 
@@ -31,17 +54,34 @@ impl Heat {
         match (*self, *other) {
             (Heat::Area(a), Heat::Area(b)) => Heat::Area(geometric(a, b)),
             (Heat::Radius(a), Heat::Radius(b)) => Heat::Radius(geometric(a, b)),
+            (Heat::Contact { conductivity: a, area }, Heat::Contact { conductivity: b, .. }) => {
+                let conductivity = if a + b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
+                Heat::Contact { conductivity, area }
+            }
             _ => Heat::None,
         }
     }
 
     /// Heat flow per temperature difference for contact radius `a` [energy/(time temperature)].
     #[inline(always)]
-    pub fn conductance<R: Real>(&self, a: R) -> R {
+    pub fn conductance<R: Real>(&self, g: &Geometry<R>, a: R, on_wall: bool) -> R {
         match *self {
             Heat::None => a.like(0.0),
-            Heat::Area(h) => a * (h * std::f64::consts::PI) * a,
+            Heat::Area(h) => a * (h * PI) * a,
             Heat::Radius(k) => a * (2.0 * k),
+            Heat::Contact { conductivity, area } => {
+                let deep = g.overlap.most(a.like(0.0));
+                let area = match area {
+                    Area::Constant(area) => a.like(area),
+                    Area::Projection if !on_wall => {
+                        let largest = g.radii[0].most(g.radii[1]);
+                        largest * largest * PI
+                    }
+                    Area::Projection => circle(g, deep, on_wall),
+                    Area::Overlap(factor) => circle(g, deep * factor, on_wall),
+                };
+                area.sqrt() * (2.0 * conductivity)
+            }
         }
     }
 }

@@ -1,16 +1,21 @@
 //! The granular law of a pair of types: normal, damping, tangential, rolling and twisting forces of a contact.
 
+mod known;
+
 use super::normal::{Force, Push};
-use super::slider::{Look, Sync};
+use super::slider::{Slip, Sync};
 use super::tangential::{Friction, Spring};
-use super::turning::{Rolling, Twisting};
-use super::{Advance, Arm, Damping, Geometry, Heat, MOST_MEMORY, Motion, Stored, Wrench, split_velocity};
+use super::turning::{Rolling, Turn, Twisting};
+use super::{
+    Advance, Arm, Cohesion, Damping, Ends, Geometry, Heat, MOST_MEMORY, Motion, Stored, Wrench,
+    split_velocity,
+};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
 use perigrain_world::Compat;
 
 /// The granular contact law of one pair of types (LAMMPS' `pair_style granular`, `gran/*` and walls), F on i from j:
-/// F = (F_n − η v_n) n + F_t.
+/// F = (F_n − η v_n − k A) n + F_t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Granular {
     /// Normal force.
@@ -19,7 +24,7 @@ pub struct Granular {
     pub damping: Damping,
     /// Its constant.
     pub damping_constant: f64,
-    /// Whether the normal force is never attractive.
+    /// Whether the normal force without cohesion is never attractive.
     pub limit_damping: bool,
     /// Tangential force.
     pub spring: Spring,
@@ -27,14 +32,18 @@ pub struct Granular {
     pub rolling: Rolling,
     /// Twisting resistance.
     pub twisting: Twisting,
+    /// Cohesion by the area of contact, added to the limited normal force.
+    pub cohesion: Cohesion,
     /// Heat conduction.
     pub heat: Heat,
     /// Lever arms of the tangential force.
     pub arm: Arm,
     /// Whether some part needs the contact radius.
     pub(crate) by_radius: bool,
+    /// Whether the second side is a wall.
+    pub(crate) is_on_wall: bool,
     /// Whether friction also acts while damping makes the normal force attractive at the end of a contact:
-    /// LAMMPS uses |F_n| as the normal load.
+    /// LAMMPS and `slip spring` use |F_n| as the normal load.
     pub(crate) rubs_pulling: bool,
     /// The LAMMPS version whose errors are reproduced.
     pub(crate) compat: Compat,
@@ -88,12 +97,27 @@ impl Granular {
         if self.heat == Heat::None {
             return g.overlap.like(0.0);
         }
-        self.heat.conductance(self.normal.radius(g))
+        self.heat.conductance(g, self.normal.radius(g), self.is_on_wall)
+    }
+
+    /// The law for contacts with walls: what depends on the second side treats it as flat and at rest. Lever arms
+    /// are those of `arm`.
+    #[must_use]
+    pub fn on_wall(&self) -> Self {
+        Self { is_on_wall: true, ..*self }
+    }
+
+    /// Whether [`Granular::contact_of`] needs [`Ends`] of grains.
+    #[inline(always)]
+    pub fn needs_ends(&self) -> bool {
+        self.rolling.needs_ends() && !self.is_on_wall
     }
 
     /// Current normal and tangential stiffness of the contact, dF/dδ and k_t [force/length].
     pub fn springs(&self, g: &Geometry) -> [f64; 2] {
-        [self.normal.tangent(g).max(0.0), self.spring.present(self.normal.radius(g))]
+        let a = self.normal.radius(g);
+        let secant = self.normal.push(g, a, &mut [0.0; MOST_MEMORY]).secant;
+        [self.normal.tangent(g).max(0.0), self.spring.present(a, secant)]
     }
 
     /// Current stiffness and damping of the contact: normal and tangential [force/length, force time/length],
@@ -103,8 +127,8 @@ impl Granular {
         let secant = self.normal.push(g, a, &mut self.normal_memory(history)).secant;
         let form = self.damping.form(a, secant, g.mass);
         let finite = |eta: f64| if eta.is_finite() { eta.max(0.0) } else { 0.0 };
-        let ([along, across], square) = (self.springs(g), g.curvature * g.curvature);
-        let rolling = self.rolling.resistance().map(|k| square * k);
+        let [along, across] = [self.normal.tangent(g).max(0.0), self.spring.present(a, secant)];
+        let rolling = self.rolling.resistance(g, [a, secant], &Ends::of(g));
         let twisting = self.twisting.resistance(&self.spring, a, form);
         let dashpots = [self.damping_constant, self.spring.damping].map(|eta| finite(form * eta));
         [
@@ -125,13 +149,20 @@ impl Granular {
     pub fn pressing(&self, g: &Geometry, history: &[f64]) -> [f64; 2] {
         let mut memory = self.normal_memory(history);
         let held = if self.normal.flows() { self.normal.energy(g, &memory) } else { 0.0 };
-        [self.normal.push(g, self.normal.radius(g), &mut memory).force, held]
+        let force = self.normal.push(g, self.normal.radius(g), &mut memory).force;
+        [force - self.cohesion.pull(g, self.is_on_wall), held - self.held_by_cohesion(g)]
+    }
+
+    /// The energy that cohesion takes to separate the two, where [`Granular::pressing`] counts energies.
+    fn held_by_cohesion(&self, g: &Geometry) -> f64 {
+        if self.normal.flows() { self.cohesion.energy(g, self.is_on_wall) } else { 0.0 }
     }
 
     /// The elastic and cohesive normal force of one contact or of lanes; updates `history`.
     #[inline(always)]
     pub(crate) fn push<R: Real>(&self, g: &Geometry<R>, history: &mut [R]) -> R {
-        self.normal.push(g, self.normal.radius(g), &mut history[self.before_normal()..]).force
+        let force = self.normal.push(g, self.normal.radius(g), &mut history[self.before_normal()..]).force;
+        if self.cohesion == Cohesion::None { force } else { force - self.cohesion.pull(g, self.is_on_wall) }
     }
 
     /// Whether the law dissipates energy apart from damping.
@@ -143,18 +174,34 @@ impl Granular {
     pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
         let mut memory = self.normal_memory(history);
         let a = self.normal.radius(g);
-        let normal = self.normal.energy(g, &memory);
-        let push = self.normal.push(g, a, &mut memory).force;
-        Stored { push, normal, across: self.spring.energy(a, history), flows: self.normal.flows() }
+        let normal = self.normal.energy(g, &memory) - self.cohesion.energy(g, self.is_on_wall);
+        let Push { force, secant, .. } = self.normal.push(g, a, &mut memory);
+        let push = force - self.cohesion.pull(g, self.is_on_wall);
+        let across = self.spring.energy(self.spring.present(a, secant), history);
+        Stored { push, normal, across, flows: self.normal.flows() }
     }
 
-    /// Force and torques of one contact; updates `history`, [`Granular::memory`] numbers.
+    /// Force and torques of one contact; updates `history`, [`Granular::memory`] numbers. For grains whose law
+    /// [needs their ends](Granular::needs_ends) these are taken from the geometry: exact for equal densities.
+    pub fn contact(
+        &self,
+        g: &Geometry,
+        i: &Motion,
+        j: &Motion,
+        history: &mut [f64],
+        step: Advance,
+    ) -> Wrench {
+        self.contact_of(g, [i, j], Ends::of(g), history, step)
+    }
+
+    /// The same for one contact or for lanes, with the two [`Ends`]; of walls and where they are not needed these
+    /// may be anything.
     #[inline(always)]
-    pub fn contact<R: Real>(
+    pub fn contact_of<R: Real>(
         &self,
         g: &Geometry<R>,
-        i: &Motion<R>,
-        j: &Motion<R>,
+        [i, j]: [&Motion<R>; 2],
+        ends: Ends<R>,
         history: &mut [R],
         step: Advance,
     ) -> Wrench<R> {
@@ -175,19 +222,27 @@ impl Granular {
         if self.limit_damping {
             normal_force = normal_force.most(zero);
         }
-        let carried = if self.normal.sticks() {
+        let mut carried = if self.normal.sticks() {
             (push.force + push.hold).abs()
         } else if self.rubs_pulling {
             normal_force.abs()
         } else {
             normal_force.most(zero)
         };
+        let load = normal_force;
+        if self.cohesion != Cohesion::None {
+            normal_force = normal_force - self.cohesion.pull(g, self.is_on_wall);
+            if self.cohesion.reduces() {
+                carried = normal_force.abs();
+            }
+        }
 
         // Slip of the two surfaces: v_t − (R_i ω_i + R_j ω_j) × n, full radii as in LAMMPS.
-        let spin = add(scale(g.radii[0], i.spin), scale(g.radii[1], j.spin));
+        let arms = if self.spring.slip == Slip::Spring { [self.arm(g, 0), self.arm(g, 1)] } else { g.radii };
+        let spin = add(scale(arms[0], i.spin), scale(arms[1], j.spin));
         let slip = sub(*v_across, cross(spin, n[0]));
         let (own, rest) = history.split_at_mut(self.before_turning());
-        let friction = self.spring.force(*n, a, form, slip, carried, own, step);
+        let friction = self.spring.force(*n, [a, form, push.secant], slip, carried, own, step);
 
         let lever = cross(friction, g.normal);
         let mut w = Wrench {
@@ -195,9 +250,11 @@ impl Granular {
             torque_i: scale(self.arm(g, 0), lever),
             torque_j: scale(self.arm(g, 1), lever),
         };
-        if self.rolling.memory() + self.twisting.memory() > 0 {
+        if self.rolling != Rolling::None || self.twisting != Twisting::None {
             let omega = sub(i.spin, j.spin);
-            self.turn(g, [n[0], *end], omega, [a, form, carried], rest, step, &mut w);
+            let ends = if self.is_on_wall { Ends::on_wall(g) } else { ends };
+            let turn = Turn { omega, carried, load: load.abs(), a, secant: push.secant, ends };
+            self.turn(g, [n[0], *end], &turn, form, rest, step, &mut w);
         }
         w
     }
@@ -239,68 +296,6 @@ impl Granular {
         Self { spring: self.spring.again(setup), ..*self }
     }
 
-    /// Runs a loop with this law, with a separate call for each frequent combination of models, so that the
-    /// compiler specializes the loop for it.
-    #[inline(always)]
-    pub(crate) fn within(&self, work: impl Loop) {
-        use {Damping::*, Friction::*};
-        if let Some(law) = self.known(hertz, Viscoelastic, MindlinClassic, Arm::Radius) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hooke, MassVelocity, LinearHistoryClassic, Arm::Radius) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hertz, Tsuji, Mindlin, Arm::Middle) {
-            return work.run(&law);
-        }
-        work.run(self);
-    }
-}
-
-/// The force, if it is Hertz'.
-#[inline(always)]
-fn hertz(force: &Force) -> Option<Force> {
-    let Force::Hertz(law) = force else { return None };
-    Some(Force::Hertz(*law))
-}
-
-/// The force, if it is Hooke's.
-#[inline(always)]
-fn hooke(force: &Force) -> Option<Force> {
-    let Force::Hooke(law) = force else { return None };
-    Some(Force::Hooke(*law))
-}
-
-impl Granular {
-    /// This law, if it has the given models and no resistance to rolling and twisting, in a form in which the
-    /// compiler knows the models.
-    #[inline(always)]
-    fn known(
-        &self,
-        normal: impl Fn(&Force) -> Option<Force>,
-        damping: Damping,
-        kind: Friction,
-        arm: Arm,
-    ) -> Option<Self> {
-        let normal = normal(&self.normal)?;
-        let plain = self.rolling == Rolling::None && self.twisting == Twisting::None;
-        let same = self.damping == damping
-            && self.spring.kind == kind
-            && self.arm == arm
-            && self.spring.look == Look::First
-            && self.spring.sync == Sync::Off;
-        (same && plain).then_some(Self {
-            normal,
-            damping,
-            spring: Spring { kind, look: Look::First, sync: Sync::Off, ..self.spring },
-            rolling: Rolling::None,
-            twisting: Twisting::None,
-            arm,
-            by_radius: kind.by_radius() || normal.by_radius(),
-            ..*self
-        })
-    }
-
     /// Lever arm of the tangential force about the centre of i (0) or j (1).
     #[inline(always)]
     fn arm<R: Real>(&self, g: &Geometry<R>, k: usize) -> R {
@@ -337,15 +332,22 @@ impl Granular {
         &self,
         g: &Geometry<R>,
         n: [Vec3<R>; 2],
-        omega: Vec3<R>,
-        [a, form, carried]: [R; 3],
+        turn: &Turn<R>,
+        form: R,
         history: &mut [R],
         step: Advance,
         w: &mut Wrench<R>,
     ) {
+        let Turn { omega, carried, a, .. } = *turn;
         let (roll, rest) = history.split_at_mut(self.rolling.memory());
         if self.rolling != Rolling::None {
-            let torque = self.rolling.torque(g, (n, self.spring.sync), omega, carried, roll, step);
+            let mut turn = *turn;
+            if self.is_on_wall && self.rolling.is_torque() {
+                // Measured with LIGGGHTS 3.8.0.
+                let distance = g.radii[0] - g.overlap;
+                turn.omega = scale((distance + g.overlap * 0.5) / distance, omega);
+            }
+            let torque = self.rolling.torque(g, (n, self.spring.sync), &turn, roll, step);
             w.torque_i = add(w.torque_i, torque);
             w.torque_j = sub(w.torque_j, torque);
         }

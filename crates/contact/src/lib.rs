@@ -7,6 +7,7 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod bodies;
+pub mod cohesion;
 pub mod damping;
 pub mod driver;
 pub mod fast;
@@ -21,13 +22,15 @@ mod together;
 pub mod turning;
 pub mod walls;
 
+pub use cohesion::{Cohesion, Pull};
 pub use damping::Damping;
-pub use heat::Heat;
+pub use heat::{Area, Heat};
 pub use law::Granular;
 pub use model::{Arm, Classic, Model, Unmixable};
 pub use normal::Normal;
+pub use slider::Slip;
 pub use tangential::{Drag, Friction, Tangential};
-pub use turning::{Rolling, Sds, Twisting};
+pub use turning::{Cdt, Epsd, Epsd2, Grip, Rolling, Sds, Twisting};
 
 pub use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, sub};
@@ -92,6 +95,50 @@ pub struct Motion<R = f64> {
     pub velocity: Vec3<R>,
     /// Angular velocity [1/time]; zero for peridynamic particles and walls.
     pub spin: Vec3<R>,
+}
+
+/// What a few laws need of the two sides beyond geometry and motion ([`Granular::needs_ends`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ends<R = f64> {
+    /// 1/I = 1/(I_i + m_i R_i²) + 1/(I_j + m_j R_j²) of spheres: inertia about the contact point [mass length²].
+    pub inertia: R,
+    /// 1 where i is the grain with the smaller tag, else −1: histories of torques are those on that grain.
+    pub side: R,
+}
+
+/// I + m R² of a sphere divided by m R².
+const ABOUT_CONTACT: f64 = 7.0 / 5.0;
+
+impl Ends {
+    /// Of two spheres; a mass may be infinite.
+    pub fn of_spheres(radii: [f64; 2], masses: [f64; 2]) -> Self {
+        let inverse = |k: usize| 1.0 / (ABOUT_CONTACT * masses[k] * radii[k] * radii[k]);
+        Self { inertia: 1.0 / (inverse(0) + inverse(1)), side: 1.0 }
+    }
+
+    /// From the geometry alone: exact for walls and for spheres of one density.
+    pub fn of(g: &Geometry) -> Self {
+        let [ri, rj] = g.radii;
+        if rj == 0.0 {
+            return Self { inertia: ABOUT_CONTACT * g.mass * ri * ri, side: 1.0 };
+        }
+        let both = g.mass * (ri.powi(3) + rj.powi(3));
+        Self::of_spheres(g.radii, [both / rj.powi(3), both / ri.powi(3)])
+    }
+}
+
+impl<R: Real> Ends<R> {
+    /// Of a grain on a wall.
+    #[inline(always)]
+    pub(crate) fn on_wall(g: &Geometry<R>) -> Self {
+        Self { inertia: g.mass * g.radii[0] * g.radii[0] * ABOUT_CONTACT, side: g.mass.like(1.0) }
+    }
+
+    /// Where no law needs them.
+    #[inline(always)]
+    pub(crate) fn none(like: R) -> Self {
+        Self { inertia: like.like(0.0), side: like.like(1.0) }
+    }
 }
 
 /// The time step as seen by contact histories.

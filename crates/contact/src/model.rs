@@ -1,10 +1,10 @@
 //! Contact models of one type as declared in a deck, and the law for a pair of types.
 
 use super::normal::geometric;
-use super::slider::Sync;
+use super::slider::{Slip, Sync};
 use super::tangential::{Drag, Friction, Spring};
 use super::turning::{Rolling, Twisting};
-use super::{Damping, Granular, Heat, Normal, Tangential, normal};
+use super::{Cohesion, Damping, Granular, Heat, Normal, Tangential, normal};
 use perigrain_world::Compat;
 
 /// Lever arm of the tangential force.
@@ -33,9 +33,11 @@ pub struct Model {
     pub rolling: Rolling,
     /// Twisting resistance.
     pub twisting: Twisting,
+    /// Cohesion by the area of contact.
+    pub cohesion: Cohesion,
     /// Heat conduction.
     pub heat: Heat,
-    /// `limit_damping`: the normal force is never attractive.
+    /// `limit_damping`: the normal force without cohesion is never attractive.
     pub limit_damping: bool,
     /// Lever arms of the tangential force.
     pub arm: Arm,
@@ -63,6 +65,11 @@ pub struct Classic {
 }
 
 impl Model {
+    /// No force at all.
+    pub fn none() -> Self {
+        Self::new(Normal::new(&normal::NONE, &[]), Damping::None, Tangential::SMOOTH)
+    }
+
     /// A model without rolling and twisting resistance.
     pub fn new(normal: Normal, damping: Damping, tangential: Tangential) -> Self {
         Self {
@@ -71,6 +78,7 @@ impl Model {
             tangential,
             rolling: Rolling::None,
             twisting: Twisting::None,
+            cohesion: Cohesion::None,
             heat: Heat::None,
             limit_damping: false,
             arm: Arm::Middle,
@@ -90,7 +98,8 @@ impl Model {
         };
         let normal = Normal::new(style, &[stiffness, eta]);
         let kind = if history { spring } else { Friction::LinearNohistory };
-        let tangential = Tangential { kind, stiffness: Some(kt), drag: Drag::Own(gamma_t), mu: c.mu };
+        let tangential =
+            Tangential { drag: Drag::Own(gamma_t), ..Tangential::new(kind, Some(kt), 0.0, c.mu) };
         Self { limit_damping: c.limit_damping, arm: c.arm, ..Self::new(normal, damping, tangential) }
     }
 
@@ -106,6 +115,11 @@ impl Model {
         self.pair(self, false, compat)
     }
 
+    /// The law for a declared pair of types of which the second has the material of `other`.
+    pub fn beside(&self, other: &Model, compat: Compat) -> Granular {
+        self.pair(other, false, compat)
+    }
+
     /// The law for an undeclared pair of different types, by LAMMPS' mixing rules: geometric means, moduli as
     /// E* and G*, `limit_damping` and `synchronized_verlet` if either model has it.
     ///
@@ -117,6 +131,10 @@ impl Model {
                 return Err(Unmixable(a, b));
             }
         }
+        let unlike = self.words().into_iter().zip(other.words()).find(|(a, b)| a != b);
+        if let Some((a, b)) = unlike {
+            return Err(Unmixable(a, b));
+        }
         if self.arm != other.arm {
             return Err(Unmixable("arms middle", "arms point"));
         }
@@ -126,7 +144,20 @@ impl Model {
         Ok(self.pair(other, true, compat))
     }
 
-    fn names(&self) -> [&'static str; 6] {
+    /// Words behind the models that must be the same for mixing.
+    fn words(&self) -> [&'static str; 5] {
+        let Tangential { of_normal, slip, drag, .. } = &self.tangential;
+        [
+            if *slip == Slip::Spring { "slip spring" } else { "slip whole" },
+            if *of_normal { "kt as a ratio" } else { "kt as a number" },
+            if *drag == Drag::Matched { "x_gamma NULL" } else { "x_gamma as a number" },
+            if self.rolling.is_full() { "rolling … full" } else { "rolling without full" },
+            if self.cohesion.reduces() { "cohesion … reduce" } else { "cohesion without reduce" },
+        ]
+    }
+
+    /// Names of the models.
+    fn names(&self) -> [&'static str; 7] {
         let m = self;
         [
             m.normal.name(),
@@ -134,6 +165,7 @@ impl Model {
             m.tangential.name(),
             m.rolling.name(),
             m.twisting.name(),
+            m.cohesion.name(),
             m.heat.name(),
         ]
     }
@@ -149,11 +181,14 @@ impl Model {
             Compat::Lammps2025 => Sync::Lammps2025,
             _ => Sync::Both,
         };
-        let spring = self.tangential.spring(&other.tangential, normals, (self.damping, eta), mixed, compat);
+        let spring =
+            self.tangential.spring(&other.tangential, normals, (self.damping, eta), &normal, mixed, compat);
         let spring = Spring { sync, ..spring };
+        let rolling = self.rolling.mixed(&other.rolling).gripping(spring.grip(normals));
         let by_radius = normal.by_radius()
             || self.damping.by_radius()
             || spring.by_radius()
+            || rolling.by_radius()
             || twisting == Twisting::Marshall;
         Granular {
             normal,
@@ -161,12 +196,14 @@ impl Model {
             damping_constant: eta,
             limit_damping: self.limit_damping || other.limit_damping,
             spring,
-            rolling: self.rolling.mixed(&other.rolling),
+            rolling,
             twisting,
+            cohesion: self.cohesion.mixed(&other.cohesion),
             heat: self.heat.mixed(&other.heat),
             arm: self.arm,
             by_radius,
-            rubs_pulling: compat.lammps(),
+            is_on_wall: false,
+            rubs_pulling: compat.lammps() || spring.slip == Slip::Spring,
             compat,
         }
     }

@@ -21,7 +21,7 @@ pub enum Memory {
 
 /// Relative tolerance for recognizing a force that slid at the limit: limits are computed from overlaps, and
 /// an overlap of a millionth of the radius has only ten correct digits.
-const KNOWN: f64 = 1e-9;
+pub(super) const KNOWN: f64 = 1e-9;
 
 /// Whether a slider is evaluated for the first time or reproduces an earlier evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +48,17 @@ pub enum Sync {
     /// The same, but a sliding spring is shortened by the dashpot before its rotation, as in LAMMPS
     /// 22Jul2025.
     Lammps2025,
+}
+
+/// What slides at the limit of friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Slip {
+    /// Spring and dashpot together: their sum is at most the limit (Luding 2008).
+    #[default]
+    Whole,
+    /// The spring alone: it is cut to the limit, and no dashpot acts in a step in which it slides; the dashpot of
+    /// a spring that holds is not limited. Measured with LIGGGHTS 3.8.0 (`gran_tangential_history`).
+    Spring,
 }
 
 /// Spring, dashpot and limit of one contact in the tangent plane.
@@ -111,6 +122,27 @@ impl<R: Real> Slider<R> {
         };
         *xi = choose::<R>(fits, carried, *xi);
         choose::<R>(slides, sliding, trial)
+    }
+
+    /// F = −k ξ − η v while k |ξ| is at most the limit, else −k ξ with ξ cut to the limit ([`Slip::Spring`]). ξ
+    /// advances by v dt and loses its component along the normal.
+    #[inline(always)]
+    pub fn force_of_spring(&self, xi: &mut Vec3<R>, step: Advance) -> Vec3<R> {
+        let (zero, one) = (self.limit.like(0.0), self.limit.like(1.0));
+        let mut bound = self.limit;
+        if step.history {
+            let n = self.n[1];
+            *xi = add(*xi, scale(zero.like(step.dt), self.v));
+            *xi = sub(*xi, scale(dot(*xi, n), n));
+        } else {
+            // A spring that was cut is recognized when it is evaluated again.
+            bound = bound * (1.0 - KNOWN);
+        }
+        let pull = self.stiffness * length(*xi);
+        let slides = pull.above(bound);
+        *xi = scale(R::choose(slides, self.limit / pull, one), *xi);
+        let drag = R::choose(slides, zero, self.damping);
+        sub(scale(-self.stiffness, *xi), scale(drag, self.v))
     }
 
     /// The force that [`Slider::force`] returned when it left the displacement `xi` behind, if sliding

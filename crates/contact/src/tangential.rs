@@ -1,8 +1,9 @@
 //! Tangential friction: the models named in decks, and their constants for a pair of types.
 
 use super::damping::Damping;
-use super::normal::{effective_shear, effective_young, geometric};
-use super::slider::{Look, Memory, Slider, Sync};
+use super::normal::{Force, effective_shear, effective_young, geometric};
+use super::slider::{Look, Memory, Slider, Slip, Sync};
+use super::turning::Grip;
 use super::{Advance, Normal};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, length, scale};
@@ -107,6 +108,12 @@ impl Friction {
         matches!(self, Friction::MindlinRescale | Friction::MindlinRescaleForce)
     }
 
+    /// Whether its spring can slide without the dashpot ([`Slip::Spring`]); without a spring the word concerns
+    /// arms and the limit only.
+    pub fn slips_by_spring(self) -> bool {
+        !matches!(self, Friction::None | Friction::MindlinForce) && !self.rescales()
+    }
+
     /// Whether the stiffness grows with the contact radius.
     fn stiffens(self) -> bool {
         self.by_radius() && self.memory() != Memory::Force
@@ -128,6 +135,9 @@ pub enum Drag {
     Times(f64),
     /// η_t from a constant of its own, in the form of the normal damping (`pair_style gran/*`).
     Own(f64),
+    /// `NULL`: η_t = √(k_t/S_n) η_n with S_n = dF_n/dδ, so that both directions are damped alike (LIGGGHTS
+    /// manual, gran_model_hertz and gran_model_hooke).
+    Matched,
 }
 
 /// A tangential model with its parameters.
@@ -137,20 +147,30 @@ pub struct Tangential {
     pub kind: Friction,
     /// k_t [pressure, or force/length for linear models]; `None` (NULL): 8 G* from the normal model's material.
     pub stiffness: Option<f64>,
+    /// Whether `stiffness` is the ratio of k_t to the normal stiffness F_n/δ.
+    pub of_normal: bool,
     /// Tangential damping.
     pub drag: Drag,
     /// Coefficient of friction.
     pub mu: f64,
+    /// What slides.
+    pub slip: Slip,
 }
 
 impl Tangential {
     /// Smooth spheres.
-    pub const SMOOTH: Tangential =
-        Tangential { kind: Friction::None, stiffness: Some(0.0), drag: Drag::Times(0.0), mu: 0.0 };
+    pub const SMOOTH: Tangential = Tangential {
+        kind: Friction::None,
+        stiffness: Some(0.0),
+        of_normal: false,
+        drag: Drag::Times(0.0),
+        mu: 0.0,
+        slip: Slip::Whole,
+    };
 
     /// The usual coefficients of this kind of friction.
     pub fn new(kind: Friction, stiffness: Option<f64>, x_gamma: f64, mu: f64) -> Self {
-        Self { kind, stiffness, drag: Drag::Times(x_gamma), mu }
+        Self { kind, stiffness, drag: Drag::Times(x_gamma), mu, ..Self::SMOOTH }
     }
 
     /// The word in decks.
@@ -167,6 +187,7 @@ impl Tangential {
         other: &Tangential,
         normals: [&Normal; 2],
         (form, eta): (Damping, f64),
+        force: &Force,
         mixed: bool,
         compat: Compat,
     ) -> Spring {
@@ -177,7 +198,8 @@ impl Tangential {
         let damping = match (self.drag, other.drag) {
             (Drag::Times(x), Drag::Times(y)) => geometric(x, y) * eta,
             (Drag::Own(a), Drag::Own(b)) => geometric(a, b),
-            (Drag::Own(a), Drag::Times(_)) | (Drag::Times(_), Drag::Own(a)) => a,
+            (Drag::Own(a), _) | (_, Drag::Own(a)) => a,
+            (Drag::Matched, _) | (_, Drag::Matched) => self.matched(stiffness, normals, force) * eta,
         };
         // Both errors are fixed in 2026.
         let classic = matches!(self.kind, Friction::LinearHistoryClassic | Friction::MindlinClassic);
@@ -185,12 +207,28 @@ impl Tangential {
         Spring {
             kind: self.kind,
             stiffness,
+            of_normal: self.of_normal,
             damping,
             mu: geometric(self.mu, other.mu),
+            slip: self.slip,
             loose,
             capped: !compat.lammps() && damping > 0.0 && self.kind.stiffens() && !form.by_radius(),
             look: Look::First,
             sync: Sync::Off,
+        }
+    }
+
+    /// √(k_t/S_n) for k_t from `stiffness`. Friction without a spring takes the k_t of the material, or k_n for
+    /// linear forces.
+    fn matched(&self, stiffness: f64, normals: [&Normal; 2], force: &Force) -> f64 {
+        if self.of_normal {
+            return stiffness.sqrt();
+        }
+        let Some([k, n]) = force.power_law(1.0, 1.0) else { return 0.0 };
+        match self.kind {
+            Friction::LinearNohistory if n == 1.0 => 1.0,
+            Friction::LinearNohistory => (8.0 * shear(normals, false) / (n * k)).sqrt(),
+            _ => (stiffness / (n * k)).sqrt(),
         }
     }
 }
@@ -212,10 +250,14 @@ pub struct Spring {
     pub kind: Friction,
     /// k_t [pressure, or force/length for linear models].
     pub stiffness: f64,
+    /// Whether `stiffness` is the ratio of k_t to the normal stiffness F_n/δ.
+    pub of_normal: bool,
     /// Constant of the tangential damping, in the form of the normal damping.
     pub damping: f64,
     /// Coefficient of friction.
     pub mu: f64,
+    /// What slides.
+    pub slip: Slip,
     /// `…_classic` springs of granular models and walls in LAMMPS 22Jul2025: the contact radius also stiffens
     /// `linear_history_classic`, and it is omitted when a sliding spring is shortened.
     pub loose: bool,
@@ -237,6 +279,18 @@ impl Spring {
         self.kind.by_radius() || self.loose
     }
 
+    /// The k_t from which `rolling epsd2` takes its stiffness: that of this spring, without one that of the material
+    /// or of the normal force (measured with LIGGGHTS 3.8.0).
+    pub fn grip(&self, normals: [&Normal; 2]) -> Grip {
+        match self.kind {
+            Friction::None | Friction::LinearNohistory if normals[0].exponent() == 1.0 => Grip::OfNormal(1.0),
+            Friction::None | Friction::LinearNohistory => Grip::ByRadius(8.0 * shear(normals, false)),
+            _ if self.of_normal => Grip::OfNormal(self.stiffness),
+            _ if self.by_radius() => Grip::ByRadius(self.stiffness),
+            _ => Grip::Is(self.stiffness),
+        }
+    }
+
     /// Size of its history: a displacement or force and, for rescaling, the contact radius.
     #[inline(always)]
     pub fn memory(&self) -> usize {
@@ -255,18 +309,26 @@ impl Spring {
         Self { look, ..*self }
     }
 
-    /// k_t at contact radius `a` [force/length]; 0 for friction without a spring.
-    pub fn present(&self, a: f64) -> f64 {
+    /// k_t at contact radius `a` and normal stiffness `secant` = F_n/δ [force/length]; 0 for friction without a
+    /// spring.
+    pub fn present(&self, a: f64, secant: f64) -> f64 {
         match self.kind {
             Friction::None | Friction::LinearNohistory => 0.0,
-            _ if self.by_radius() => self.stiffness * a,
-            _ => self.stiffness,
+            _ => self.current(a, secant),
         }
     }
 
-    /// The energy of a spring with this `history`: ½ k_t ξ², or F²/(2 k_t) if the history is the force.
-    pub fn energy(&self, a: f64, history: &[f64]) -> f64 {
-        let stiffness = self.present(a);
+    #[inline(always)]
+    fn current<R: Real>(&self, a: R, secant: R) -> R {
+        if self.of_normal {
+            return secant * self.stiffness;
+        }
+        if self.by_radius() { a * self.stiffness } else { a.like(self.stiffness) }
+    }
+
+    /// The energy of a spring of this stiffness with this `history`: ½ k_t ξ², or F²/(2 k_t) if the history is the
+    /// force.
+    pub fn energy(&self, stiffness: f64, history: &[f64]) -> f64 {
         let [x, y, z, ..] = *history else { return 0.0 };
         let square = x * x + y * y + z * z;
         match self.kind.memory() {
@@ -277,13 +339,13 @@ impl Spring {
     }
 
     /// The tangential force on i, at most `mu` times `carried`, the normal load for friction; `a`: contact
-    /// radius, `form`: normal damping divided by its constant, `v`: slip velocity, `n` as in [`Slider`].
+    /// radius, `form`: normal damping divided by its constant, `secant`: F_n/δ, `v`: slip velocity, `n` as in
+    /// [`Slider`].
     #[inline(always)]
     pub fn force<R: Real>(
         &self,
         n: [Vec3<R>; 2],
-        a: R,
-        form: R,
+        [a, form, secant]: [R; 3],
         v: Vec3<R>,
         carried: R,
         history: &mut [R],
@@ -291,7 +353,7 @@ impl Spring {
     ) -> Vec3<R> {
         let limit = carried * self.mu;
         let damping = form * self.damping;
-        let stiffness = if self.by_radius() { a * self.stiffness } else { a.like(self.stiffness) };
+        let stiffness = self.current(a, secant);
         match self.kind {
             Friction::None => [a.like(0.0); 3],
             Friction::LinearNohistory => {
@@ -317,7 +379,10 @@ impl Spring {
                 if let Look::Again { setup } = self.look {
                     return slider.again(xi, setup);
                 }
-                let force = slider.force(&mut xi, kind.memory(), step);
+                let force = match self.slip {
+                    Slip::Whole => slider.force(&mut xi, kind.memory(), step),
+                    Slip::Spring => slider.force_of_spring(&mut xi, step),
+                };
                 history[..3].copy_from_slice(&xi);
                 force
             }

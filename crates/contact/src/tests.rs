@@ -2,6 +2,7 @@
 //! for two spheres.
 
 mod closed_forms;
+mod liggghts;
 pub(crate) mod new_law;
 mod oblique;
 mod plastic;

@@ -1,7 +1,7 @@
 //! Evaluates several contacts of one law at a time. One by one, the wall of a drum takes a quarter of its
 //! step and a bed of plastic grains a fifth.
 
-use super::{Advance, Geometry, Granular, MOST_MEMORY, Motion, Wrench};
+use super::{Advance, Ends, Geometry, Granular, MOST_MEMORY, Motion, Wrench};
 use perigrain_base::math::form::{Form, InLanes};
 use perigrain_base::math::lanes::{Lanes, load_rows, store_rows};
 use perigrain_base::math::vec3::Vec3;
@@ -20,6 +20,10 @@ pub(super) trait Met {
     fn other(&self, k: usize) -> Motion;
     /// The grains on the second sides, if these are grains.
     fn others<const N: usize>(&self, k: [usize; N]) -> Option<[u32; N]>;
+    /// Both sides, if these are grains; the first has the smaller tag.
+    fn ends(&self, g: &Geometry, _k: usize) -> Ends {
+        Ends::of(g)
+    }
 }
 
 /// Contacts of one law.
@@ -54,7 +58,9 @@ impl<M: Met> Together<'_, M> {
             let i = self.met.own(k) as usize;
             let own = Motion { velocity: self.v[i], spin: self.omega[i] };
             let remembered = &mut self.history[k * self.width..][..self.width];
-            *w = self.law.contact(&self.geometry[k], &own, &self.met.other(k), remembered, self.step);
+            let g = &self.geometry[k];
+            let ends = if self.law.needs_ends() { self.met.ends(g, k) } else { Ends::none(0.0) };
+            *w = self.law.contact_of(g, [&own, &self.met.other(k)], ends, remembered, self.step);
         }
     }
 
@@ -129,7 +135,15 @@ impl<M: Met> InLanes for Together<'_, M> {
                 let g = Geometry { normal: [nx, ny, nz], overlap, radii: [ri, rj], curvature, mass };
                 let (own, other) = (self.motion::<N, V>(own), self.other::<N, V>(k));
                 let mut history = remembered::<N, V>(&past, width);
-                let w = self.law.contact(&g, &own, &other, &mut history[..width], self.step);
+                let mut ends = Ends::none(overlap);
+                if self.law.needs_ends() {
+                    let mut inertia = [0.0; N];
+                    for lane in 0..N {
+                        inertia[lane] = self.met.ends(&self.geometry[k[lane]], k[lane]).inertia;
+                    }
+                    ends.inertia = V::of(inertia);
+                }
+                let w = self.law.contact_of(&g, [&own, &other], ends, &mut history[..width], self.step);
                 remember(&past, &history[..width]);
                 let ([a, b, c], [d, e, f], [x, y, z]) = (w.force, w.torque_i, w.torque_j);
                 store_rows(&done, 0, [a, b, c, d]);

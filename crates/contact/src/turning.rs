@@ -1,12 +1,15 @@
 //! Rolling and twisting resistance: a spring, a dashpot and a slider for the relative spin.
 
+mod torques;
+
 use super::normal::geometric;
 use super::slider::{Memory, Slider, Sync};
 use super::tangential::Spring;
-use super::{Advance, Geometry};
+use super::{Advance, Ends, Geometry};
 use perigrain_base::math::real::Real;
 use perigrain_base::math::vec3::{Vec3, cross, scale};
 use perigrain_world::Compat;
+pub use torques::{Cdt, Epsd, Epsd2, Grip};
 
 /// Coefficients of a spring-dashpot-slider.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +32,8 @@ impl Sds {
     }
 }
 
-/// Rolling resistance (Luding 2008): a pseudo-force between the surfaces that produces torques only.
+/// Rolling resistance: `sds` (Luding 2008) is a pseudo-force between the surfaces that produces torques only; the others are
+/// torques against the relative spin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rolling {
     /// `none`.
@@ -37,6 +41,29 @@ pub enum Rolling {
     None,
     /// `sds k gamma mu`.
     Sds(Sds),
+    /// `cdt mu`.
+    Cdt(Cdt),
+    /// `epsd mu eta`.
+    Epsd(Epsd),
+    /// `epsd2 mu`.
+    Epsd2(Epsd2),
+}
+
+/// What a rolling torque depends on apart from the geometry.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn<R> {
+    /// Relative spin ω_i − ω_j; of torques on walls times (R − δ/2)/(R − δ).
+    pub omega: Vec3<R>,
+    /// The normal load for friction.
+    pub carried: R,
+    /// |F_n| with its dashpot, without cohesion.
+    pub load: R,
+    /// Contact radius, and F_n/δ of the elastic force.
+    pub a: R,
+    /// See `a`.
+    pub secant: R,
+    /// The two sides.
+    pub ends: Ends<R>,
 }
 
 impl Rolling {
@@ -45,45 +72,96 @@ impl Rolling {
         match self {
             Rolling::None => "none",
             Rolling::Sds(_) => "sds",
+            Rolling::Cdt(_) => "cdt",
+            Rolling::Epsd(_) => "epsd",
+            Rolling::Epsd2(_) => "epsd2",
         }
+    }
+
+    /// Whether the spin about the normal counts too (`full`).
+    pub fn is_full(&self) -> bool {
+        match self {
+            Rolling::None | Rolling::Sds(_) => false,
+            Rolling::Cdt(c) => c.full,
+            Rolling::Epsd(c) => c.full,
+            Rolling::Epsd2(c) => c.full,
+        }
+    }
+
+    /// Whether it is a torque against the spin, not a pseudo-force.
+    #[inline(always)]
+    pub fn is_torque(&self) -> bool {
+        !matches!(self, Rolling::None | Rolling::Sds(_))
+    }
+
+    /// Whether it needs the moment of inertia and the side of [`Ends`].
+    #[inline(always)]
+    pub fn needs_ends(&self) -> bool {
+        matches!(self, Rolling::Epsd(_) | Rolling::Epsd2(_))
+    }
+
+    /// Whether it needs the contact radius.
+    pub fn by_radius(&self) -> bool {
+        matches!(self, Rolling::Epsd2(Epsd2 { grip: Grip::ByRadius(_), .. }))
     }
 
     /// The model between two types whose models are of one kind.
     pub fn mixed(&self, other: &Rolling) -> Rolling {
         match (self, other) {
             (Rolling::Sds(a), Rolling::Sds(b)) => Rolling::Sds(a.mixed(b)),
+            (Rolling::Cdt(a), Rolling::Cdt(b)) => Rolling::Cdt(a.mixed(b)),
+            (Rolling::Epsd(a), Rolling::Epsd(b)) => Rolling::Epsd(a.mixed(b)),
+            (Rolling::Epsd2(a), Rolling::Epsd2(b)) => Rolling::Epsd2(a.mixed(b)),
             _ => Rolling::None,
         }
     }
 
-    /// Size of its history: the rolling displacement.
-    #[inline(always)]
-    pub fn memory(&self) -> usize {
-        if *self == Rolling::None { 0 } else { 3 }
-    }
-
-    /// Stiffness [force/length] and damping [mass/time] of the pseudo-force.
-    pub fn resistance(&self) -> [f64; 2] {
+    /// The same with the tangential stiffness that `epsd2` takes its own from.
+    #[must_use]
+    pub fn gripping(self, grip: Grip) -> Self {
         match self {
-            Rolling::None => [0.0; 2],
-            Rolling::Sds(c) => [c.stiffness, c.damping],
+            Rolling::Epsd2(c) => Rolling::Epsd2(Epsd2 { grip, ..c }),
+            other => other,
         }
     }
 
-    /// The torque on i against the rolling velocity R̄ ω × n (Wang et al. 2015), ω being the relative spin,
-    /// at most `mu` times the normal load `carried` at the arm R̄; the opposite acts on j. `n` as in
-    /// [`Slider`]; the direction of the arm is the normal of `g`.
+    /// Size of its history: the rolling displacement, or the torque of the spring.
     #[inline(always)]
-    pub fn torque<R: Real>(
+    pub fn memory(&self) -> usize {
+        if matches!(self, Rolling::None | Rolling::Cdt(_)) { 0 } else { 3 }
+    }
+
+    /// Stiffness [torque] and damping [torque time]; `a` and `secant` as in [`Turn`].
+    pub(crate) fn resistance(&self, g: &Geometry, [a, secant]: [f64; 2], ends: &Ends) -> [f64; 2] {
+        let square = g.curvature * g.curvature;
+        match self {
+            Rolling::None | Rolling::Cdt(_) => [0.0; 2],
+            Rolling::Sds(c) => [square * c.stiffness, square * c.damping],
+            Rolling::Epsd(c) => c.resistance(g, secant, ends),
+            Rolling::Epsd2(c) => [square * c.grip.stiffness(a, secant), 0.0],
+        }
+    }
+
+    /// The torque on i; the opposite acts on j. That of `sds` is against the rolling velocity R̄ ω × n (Wang et al.
+    /// 2015), ω being the relative spin, at most `mu` times the normal load at the arm R̄. `n` as in [`Slider`]; the
+    /// direction of the arm is the normal of `g`.
+    #[inline(always)]
+    pub(crate) fn torque<R: Real>(
         &self,
         g: &Geometry<R>,
         (n, sync): ([Vec3<R>; 2], Sync),
-        omega: Vec3<R>,
-        carried: R,
+        turn: &Turn<R>,
         history: &mut [R],
         step: Advance,
     ) -> Vec3<R> {
-        let Rolling::Sds(c) = self else { return [carried.like(0.0); 3] };
+        let Turn { omega, carried, .. } = *turn;
+        let c = match self {
+            Rolling::None => return [carried.like(0.0); 3],
+            Rolling::Sds(c) => c,
+            Rolling::Cdt(c) => return c.torque(g, turn),
+            Rolling::Epsd(c) => return c.torque(g, turn, history, step),
+            Rolling::Epsd2(c) => return c.torque(g, turn, history, step),
+        };
         let like = |x: f64| carried.like(x);
         let v = scale(g.curvature, cross(omega, n[0]));
         let slider = Slider {

@@ -9,7 +9,7 @@ use perigrain_base::math::vec3::{Vec3, add, cross, sub};
 use perigrain_base::par;
 use perigrain_world::contacts::Contacts;
 pub use perigrain_world::region::{FacetNear, Near};
-pub use shapes::{Planes, Tube};
+pub use shapes::{Cylinder, Planes, Shifted, Tube};
 use std::ops::Range;
 
 /// Selects the spheres that interact with a wall.
@@ -21,6 +21,15 @@ pub struct Meeting<'a> {
     pub group: u32,
     /// Row ranges, ascending.
     pub rows: &'a [Range<usize>],
+    /// Types of the spheres, and whether each type (from 1) is selected; all are where nothing stands.
+    pub kinds: Option<(&'a [u16], &'a [bool])>,
+}
+
+impl Meeting<'_> {
+    /// Whether a sphere is selected.
+    fn has(&self, i: usize) -> bool {
+        self.mask[i] & self.group != 0 && self.kinds.is_none_or(|(kind, some)| some[usize::from(kind[i]) - 1])
+    }
 }
 
 /// A wall for spheres.
@@ -165,7 +174,7 @@ impl WallSweep {
             let first = which.rows.partition_point(|rows| rows.end <= range.start);
             let within = which.rows[first..].iter().take_while(|rows| rows.start < range.end);
             for i in within.flat_map(|rows| rows.start.max(range.start)..rows.end.min(range.end)) {
-                if which.mask[i] & which.group == 0 {
+                if !which.has(i) {
                     continue;
                 }
                 let (x, radius) = (grains.x[i], grains.radius[i]);
@@ -229,6 +238,7 @@ impl WallSweep {
         self.geometry.clear();
         let spheres = self.touching.iter().map(|t| (t, t.grain as usize));
         self.geometry.extend(spheres.map(|(t, i)| geometry(&t.near, grains.radius[i], grains.mass[i])));
+        let law = &law.on_wall();
         let history = par::Rows { data: &mut memory.history[..], width };
         let columns = (&mut self.wrenches[..], history, &self.touching[..], &self.geometry[..]);
         par::each(columns, |_, (wrenches, history, touching, geometry)| {
@@ -339,6 +349,7 @@ impl WallSweep {
         flow: &mut [f64],
     ) -> f64 {
         self.heat.clear();
+        let law = &law.on_wall();
         for t in &self.touching {
             let i = t.grain as usize;
             let conductance = law.conductance(&geometry(&t.near, grains.radius[i], grains.mass[i]));

@@ -243,6 +243,18 @@ impl Base {
         cx: &mut dyn SealCx,
         every: i64,
         attributes: &[Attribute],
+        write: impl FnMut(Shot<'_>) -> Result<()> + Send + 'static,
+    ) -> Result<Box<dyn Op>> {
+        self.seal_reading(cx, every, attributes, Fields::NONE, write)
+    }
+
+    /// The same for a writer that reads more fields.
+    pub fn seal_reading(
+        &self,
+        cx: &mut dyn SealCx,
+        every: i64,
+        attributes: &[Attribute],
+        more: Fields,
         mut write: impl FnMut(Shot<'_>) -> Result<()> + Send + 'static,
     ) -> Result<Box<dyn Op>> {
         let when = self.when(cx, every)?;
@@ -299,7 +311,7 @@ impl Base {
         Ok(StepOp::new(
             name,
             Stage::Output,
-            Needs::new().read(reads | BOX | FACTS | REGIONS | SLOTS).keep(COLUMNS),
+            Needs::new().read(reads | BOX | FACTS | REGIONS | SLOTS | more).keep(COLUMNS),
             act,
         )
         .when(when)

@@ -8,7 +8,9 @@ mod base;
 mod columns;
 mod forms;
 mod image;
+mod legacy;
 mod local;
+mod mesh;
 mod movie;
 mod packed;
 mod picture;
@@ -38,6 +40,8 @@ pub const DUMPS: &[&dyn DumpStyle] = &[
     &image::Image,
     &local::Local,
     &packed::LOCAL,
+    &mesh::MeshStl,
+    &mesh::MeshVtk,
     &movie::Movie,
     &vtk::Vtk,
     &forms::Xyz,

@@ -1,8 +1,8 @@
-//! Dump `vtk`: `.vtu` files with a `.pvd` time series, for ParaView and PyVista.
+//! Dump `vtk`: `.vtu` files with a `.pvd` time series, or legacy `.vtk` files, for ParaView and PyVista.
 
 use super::attribute::{Attribute, Core, Source, expand};
 use super::base::{Base, Common, Files, OfFile, OfParticles, Shot, foreign};
-use super::{Dump, DumpStyle, MODIFY};
+use super::{Dump, DumpStyle, MODIFY, legacy};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::par;
 use perigrain_lang::{Args, Word};
@@ -31,7 +31,8 @@ impl Style for Vtk {
                    `f`, `omegax …` is `omega`, `tqx …` is `tq`, `ix …` is `i`, `xu …` is `unwrapped`, and `c_ID[1] c_ID[2] \
                    c_ID[3]` is `c_ID`. Every point is a vertex cell; the field `TIME` holds the simulated time. Beside the \
                    snapshots stands a list `NAME.pvd` with their times, rewritten after each snapshot; open that one in \
-                   ParaView. Only `.vtu` is written (appended raw data, zlib blocks made on all threads).",
+                   ParaView. A name that ends in `.vtk` makes legacy text files instead, without a list; `.vtu` holds appended raw \
+                   data in zlib blocks made on all threads.",
             example: "dump v all vtk 500 plate_*.vtu id type vx vy vz c_damage",
         }
     }
@@ -49,7 +50,7 @@ struct Line {
 impl DumpStyle for Vtk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let Line { target: OfFile { file }, attributes } = read(args, cx)?;
-        let base = Base::new(Files { endings: &[".vtu"], ..Files::any("vtk") }, &file, cx)?;
+        let base = Base::new(Files { endings: &[".vtu", ".vtk"], ..Files::any("vtk") }, &file, cx)?;
         base.needs_star(attributes.first().map_or(file.span, |word| word.span), cx)?;
         let attributes = attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?.concat();
         Ok(Box::new(Declared { base, attributes, storage: Storage::default(), single: false }))
@@ -211,6 +212,10 @@ impl Declared {
             named.map(|(c, o)| Array { name: &c.name, values: o.values(self.single) }).collect();
         let (time, state) = (shot.world.clock.time(), shot.state);
         let path = state.target.pattern.at(shot.step);
+        if path.extension().is_some_and(|end| end == "vtk") {
+            let text = legacy::text(time, &fill(rows, |i| x[i]), &arrays);
+            return state.target.write(shot.step, |to| to.write_all(text.as_bytes()));
+        }
         vtu::write(&path, time, points.values(self.single), &arrays, self.storage)?;
         if every == 0 {
             return Ok(());

@@ -15,18 +15,21 @@ pub struct Crowd<'a> {
 }
 
 /// Maximum number of cells along one direction: more would cost more memory than they save time.
-const MOST: usize = 100;
+const MOST: f64 = 100.0;
+/// So many may always be there, however few spheres come.
+const LEAST: f64 = 8.0;
 
 impl<'a> Crowd<'a> {
     /// Without spheres. `reach` is the largest distance at which two of them touch; positions to be tested
-    /// lie between `lo` and `hi`.
-    pub fn new(domain: &'a Domain, lo: [f64; 3], hi: [f64; 3], reach: f64) -> Self {
+    /// lie between `lo` and `hi`. About `expected` spheres come.
+    pub fn new(domain: &'a Domain, lo: [f64; 3], hi: [f64; 3], reach: f64, expected: usize) -> Self {
         let round = domain.periodic();
         let lengths = domain.lengths();
         let lo = std::array::from_fn(|d| if round[d] { domain.lo[d] } else { lo[d] - reach });
         let span: [f64; 3] =
             std::array::from_fn(|d| if round[d] { lengths[d] } else { hi[d] + reach - lo[d] });
-        let cells = span.map(|s| ((s / reach).min(MOST as f64) as usize).max(1));
+        let most = (2.0 * expected as f64).cbrt().clamp(LEAST, MOST);
+        let cells = span.map(|s| ((s / reach).min(most) as usize).max(1));
         let size = std::array::from_fn(|d| span[d] / cells[d] as f64);
         Self { domain, lo, size, cells, round, heads: vec![vec![]; cells.iter().product()], spheres: vec![] }
     }
@@ -98,7 +101,7 @@ mod tests {
         faces.0[2] = [Face::Fixed; 2];
         let domain = Domain::new([0.0; 3], [7.0, 3.0, 9.0], faces);
         let mut r = ParkMiller::new(99);
-        let mut crowd = Crowd::new(&domain, [0.0, 0.0, 2.0], [7.0, 3.0, 5.0], 1.0);
+        let mut crowd = Crowd::new(&domain, [0.0, 0.0, 2.0], [7.0, 3.0, 5.0], 1.0, 400);
         let mut all: Vec<([f64; 3], f64)> = vec![];
         let (mut free, mut taken) = (0, 0);
         for _ in 0..400 {

@@ -26,6 +26,7 @@ mod deposit;
 mod dipoles;
 mod drag;
 mod dt_critical;
+mod dt_grain;
 mod dt_guard;
 mod dt_reset;
 mod efield;
@@ -41,11 +42,14 @@ mod halt;
 mod heat;
 mod heat_flow;
 mod indent;
+mod insert;
 mod kick;
 mod langevin;
 mod lineforce;
+mod massflow_mesh;
 mod momentum;
 mod move_fix;
+mod move_mesh;
 mod nve;
 mod nve_bpm_sphere;
 mod nve_limit;
@@ -67,6 +71,7 @@ mod spring;
 mod spring_self;
 mod store_force;
 mod store_state;
+mod surface;
 mod time_step;
 mod vector;
 mod viscous;
@@ -112,6 +117,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &deposit::Deposit,
     &drag::Drag,
     &dt_critical::DtCritical,
+    &dt_grain::DtGrain,
     &dt_guard::DtGuard,
     &dt_reset::DtReset,
     &efield::Efield,
@@ -128,10 +134,13 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &heat::Flux,
     &heat::Convect,
     &indent::Indent,
+    &insert::Insert,
     &langevin::Langevin,
     &lineforce::LineForce,
+    &massflow_mesh::MassflowMesh,
     &momentum::Momentum,
     &move_fix::Move,
+    &move_mesh::MoveMesh,
     &nve::Nve,
     &nve_limit::NveLimit,
     &nve_noforce::NveNoForce,
@@ -154,6 +163,7 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &spring_self::SpringSelf,
     &store_force::StoreForce,
     &store_state::StoreState,
+    &surface::Surface,
     &vector::VectorFix,
     &viscous::Viscous,
     &viscous_nonlinear::ViscousNonlinear,

@@ -1,7 +1,7 @@
 //! fix nve/limit: velocity Verlet with a limit on the displacement per step.
 
 use super::nve::half_step;
-use super::{AtRest, Facts, Fix, FixStyle, Moves};
+use super::{AtRest, Facts, Fix, FixStyle, Moves, needs_spheres};
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::dot;
 use perigrain_base::par::{self, add};
@@ -9,9 +9,9 @@ use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick};
 use perigrain_styles::matter::{Masses, check_masses, publish};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Syntax, Words, read};
+use perigrain_styles::words::{Or, Positive, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
-use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, SLOTS, TYPE_MASS, V, X};
+use perigrain_world::field::{F, KIND, MASK, MASS, MEMO, RADIUS, SLOTS, TYPE_MASS, V, X};
 use perigrain_world::{GroupId, Key, Numbers, World};
 
 /// The style.
@@ -35,13 +35,36 @@ impl Style for NveLimit {
 #[derive(Words)]
 struct Line {
     /// The longest way xmax of a particle in a step [length]: after each half kick a velocity above xmax/Δt is shortened to that.
-    #[word(name = "xmax", positive, what = "the longest way xmax")]
-    most: f64,
+    #[word(name = "xmax", what = "the longest way xmax")]
+    most: Or<OfRadius, Positive>,
+}
+
+/// The way as a part of the particle's size.
+#[derive(Clone, Copy, Words)]
+#[word(what = "longest way")]
+enum OfRadius {
+    /// So many times its radius, for each particle (not in LAMMPS).
+    Radius(#[word(name = "F", what = "the part of the radius", positive)] f64),
+}
+
+/// The longest way in a step.
+#[derive(Clone, Copy)]
+enum Most {
+    /// The same for all [length].
+    Way(f64),
+    /// So many radii.
+    Radii(f64),
 }
 
 impl FixStyle for NveLimit {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let Line { most } = read(args, cx)?;
+        let most = match read::<Line>(args, cx)?.most {
+            Or::Else(Positive(way)) => Most::Way(way),
+            Or::Word(OfRadius::Radius(part)) => {
+                needs_spheres(cx, "nve/limit with `radius`")?;
+                Most::Radii(part)
+            }
+        };
         Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, most }))
     }
 }
@@ -53,7 +76,7 @@ type Parts<'a> = (&'a mut [[f64; 3]], &'a mut [[f64; 3]], &'a [[f64; 3]], &'a [u
 struct Declared {
     id: String,
     group: GroupId,
-    most: f64,
+    most: Most,
 }
 
 impl Declared {
@@ -65,9 +88,13 @@ impl Declared {
     fn kick(&self, w: &mut World, t: &Tick, drift: bool) -> f64 {
         let (half, bit) = (half_step(w, t.dt), self.group.bit());
         // The limit is per step of the deck, even when that is divided into shorter ones.
-        let fastest = self.most / w.clock.dt;
-        let square = fastest * fastest;
+        let step = w.clock.dt;
         let p = &mut w.particles;
+        let (most, radius) = (self.most, &p.radius[..]);
+        let fastest = |i: usize| match most {
+            Most::Way(way) => way / step,
+            Most::Radii(part) => part * radius[i] / step,
+        };
         let masses = Masses::new(p.style, &p.mass, &p.kind, &w.type_mass);
         let columns = (&mut p.x[..], &mut p.v[..], &p.f[..], &p.mask[..]);
         let chunk = |start: usize, (x, v, f, mask): Parts<'_>| {
@@ -78,7 +105,8 @@ impl Declared {
                 }
                 let by = half / masses.get(start + k);
                 (0..3).for_each(|d| v[d] += by * f[d]);
-                let speed = dot(*v, *v);
+                let (speed, fastest) = (dot(*v, *v), fastest(start + k));
+                let square = fastest * fastest;
                 if speed > square {
                     shortened += 1.0;
                     let scale = (square / speed).sqrt();
@@ -110,7 +138,11 @@ impl Fix for Declared {
         let slot = cx.slot(&format!("f_{}", self.id));
         let half = |stage, drift, me: Self| {
             let (name, key) = (format!("fix {} nve/limit", me.id), me.key());
-            let access = Needs::new()
+            let access = match me.most {
+                Most::Way(_) => Needs::new(),
+                Most::Radii(_) => Needs::new().read(RADIUS),
+            };
+            let access = access
                 .read(F | MASS | MASK | TYPE_MASS | KIND)
                 .write(X | V | SLOTS)
                 .keep(MEMO)
@@ -168,7 +200,18 @@ mod tests {
         b.stage(&mut ops, Stage::FinalIntegrate).unwrap();
         assert_eq!(b.world.particles.v, [[2.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         assert_eq!(b.slot_of("f_f").scalar, 2.0);
-        for words in ["", "0", "-1", "x"] {
+        // Radii of 1 and 0.25: ways of 2 and 0.5 in a step at most.
+        let style = AtomStyle { sphere: true, sphere_mass: true, ..AtomStyle::default() };
+        let mut b = Bench::new(style, &[[0.0; 3]; 2]);
+        b.world.clock.dt = 0.5;
+        b.world.particles.radius = vec![1.0, 0.25].into();
+        b.world.particles.v = vec![[3.0, 0.0, 0.0]; 2].into();
+        let fix = b.fix(&NveLimit, "radius 2").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let mut ops = b.seal(&*fix).unwrap();
+        b.stage(&mut ops, Stage::InitialIntegrate).unwrap();
+        assert_eq!(b.world.particles.x, [[1.5, 0.0, 0.0], [0.5, 0.0, 0.0]]);
+        for words in ["", "0", "-1", "x", "radius", "radius 0"] {
             assert!(b.fix(&NveLimit, words).is_err(), "{words}");
         }
     }

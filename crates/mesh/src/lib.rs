@@ -9,6 +9,7 @@ mod check;
 mod columns;
 mod exact;
 mod facets;
+mod legacy;
 mod obj;
 mod ply;
 mod read;

@@ -1,7 +1,7 @@
 //! Detects the format of a surface file, and reads its triangles.
 
 use super::check::flat;
-use super::{Triangle, obj, ply, stl, vtp};
+use super::{Triangle, legacy, obj, ply, stl, vtp};
 use thiserror::Error;
 
 /// File formats.
@@ -15,6 +15,8 @@ pub enum Format {
     Ply,
     /// VTK XML `PolyData`.
     Vtp,
+    /// VTK's legacy text format.
+    Vtk,
 }
 
 impl Format {
@@ -25,6 +27,7 @@ impl Format {
             Format::Obj => "OBJ",
             Format::Ply => "PLY",
             Format::Vtp => "VTP",
+            Format::Vtk => "VTK",
         }
     }
 }
@@ -73,6 +76,9 @@ pub enum Error {
     /// No VTP file.
     #[error("is no VTP file: {0}")]
     Vtp(#[from] vtp::Error),
+    /// No VTK file.
+    #[error("is no VTK file: {0}")]
+    Vtk(#[from] legacy::Error),
     /// A corner at no place.
     #[error("is no {name} file: triangle {number} has a coordinate that is no finite number", name = .format.name())]
     NotFinite {
@@ -83,7 +89,7 @@ pub enum Error {
     },
 }
 
-/// Reads the triangles of a file: PLY and VTP are recognized by their first bytes, OBJ by the file name
+/// Reads the triangles of a file: PLY, VTP and VTK are recognized by their first bytes, OBJ by the file name
 /// extension, everything else is STL.
 ///
 /// # Errors
@@ -94,6 +100,8 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Surface, Error> {
     let mut comments = 0;
     let (format, name, triangles) = if bytes.starts_with(b"ply") || ends(".ply") {
         (Format::Ply, String::new(), ply::read(bytes)?)
+    } else if start.starts_with(legacy::MARK) {
+        (Format::Vtk, String::new(), legacy::read(bytes)?)
     } else if start.starts_with(b"<") || ends(".vtp") {
         (Format::Vtp, String::new(), vtp::read(bytes)?)
     } else if ends(".obj") {

@@ -225,6 +225,10 @@ impl Probe for ContactProbe {
         let acting = self.evaluated(w, request, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
                 sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
+            let remembered = memory.history.chunks_exact(memory.width.max(1));
+            for (a, row) in all.iter_mut().zip(remembered) {
+                a.history.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+            }
             if own == Own::Mdr {
                 // In the evaluation data of such contacts the area stands before the energy at the end.
                 let rows = memory.history.chunks_exact(memory.width.max(1));
@@ -336,5 +340,6 @@ fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Inter
             numbers[7..10].copy_from_slice(&sub(relative, along));
         }
     }
-    Interaction { i: pair.i, j: pair.j, d, force: wrench.force, energy: 0.0, own: numbers }
+    let (force, torque) = (wrench.force, wrench.torque_i);
+    Interaction { i: pair.i, j: pair.j, d, force, torque, own: numbers, ..Interaction::default() }
 }

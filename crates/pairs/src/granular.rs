@@ -1,6 +1,6 @@
 //! `pair_style granular`: contacts of spheres, with models chosen per pair of types.
 
-mod declared;
+pub mod declared;
 pub mod force;
 pub mod heating;
 mod images;

@@ -22,6 +22,7 @@ mod shared;
 mod soft;
 mod zero;
 
+pub use granular::declared::GRANULAR_RULES;
 pub use granular::force::TILES;
 pub use granular::mdr::PLASTIC_GRAIN;
 pub use granular::ranks::DEEP;

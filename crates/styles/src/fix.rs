@@ -93,6 +93,8 @@ pub struct Facts {
     pub adds_energy: bool,
     /// It makes particles during a run.
     pub makes_particles: bool,
+    /// Its ops stand behind those of all other fixes: it takes away forces that these have added.
+    pub acts_last: bool,
     /// The molecule template of which new copies become rigid bodies of this fix.
     pub adopts: Option<String>,
     /// The file it writes during a run.

@@ -23,6 +23,7 @@ pub mod fix;
 pub mod lammps;
 pub mod ledger;
 pub mod matter;
+pub mod mesh_surface;
 pub mod molecules;
 pub mod near;
 pub mod newcomers;
@@ -36,6 +37,7 @@ pub mod seal;
 pub mod step_op;
 pub mod stretching;
 pub mod surface;
+pub mod surface_speed;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod triangles;

@@ -164,6 +164,11 @@ pub trait Pair: DynClone + Send {
         None
     }
 
+    /// Young's modulus [pressure] and Poisson's ratio of the grains of a type, where its model has them.
+    fn material(&self, _kind: u16) -> Option<(f64, f64)> {
+        None
+    }
+
     /// Makes what decks may name of it before the first run.
     fn declare(&self, _w: &mut World) {}
 

@@ -8,6 +8,9 @@ use perigrain_world::contacts::Rolls;
 /// How many numbers of its own a pair style may give to each pair.
 pub const OWN: usize = 14;
 
+/// How many numbers that a contact remembers are shown.
+pub const HISTORY: usize = 12;
+
 /// Two particles and what they do to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interaction {
@@ -23,6 +26,10 @@ pub struct Interaction {
     pub energy: f64,
     /// Additional numbers of the style (`p1`, `p2` … of compute pair/local).
     pub own: [f64; OWN],
+    /// Torque on i [torque].
+    pub torque: Vec3,
+    /// The first numbers that a contact remembers.
+    pub history: [f64; HISTORY],
 }
 
 impl Interaction {
@@ -157,7 +164,9 @@ pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, request: Request) -> R
         let same = (later.i, later.j) == (first.i, first.j) && later.d == first.d;
         if same {
             (0..3).for_each(|k| first.force[k] += later.force[k]);
+            (0..3).for_each(|k| first.torque[k] += later.torque[k]);
             (0..OWN).for_each(|k| first.own[k] += later.own[k]);
+            (0..HISTORY).for_each(|k| first.history[k] += later.history[k]);
             first.energy += later.energy;
         }
         same

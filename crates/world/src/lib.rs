@@ -27,6 +27,7 @@ pub mod lattice;
 pub mod material;
 pub mod memory;
 pub mod minimizer;
+mod mixture;
 pub mod moving;
 pub mod named;
 pub mod order;
@@ -76,6 +77,7 @@ pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
+pub use mixture::{Ingredient, Mixture};
 pub use moving::{Grip, Turn, Under};
 pub use named::{Constant, Key, Named, Numbers, Vectors};
 pub use outline::Outline;
@@ -143,6 +145,9 @@ pub struct World {
     /// Molecule templates by ID, one for each file; a restart file does not hold them, as in LAMMPS.
     #[serde(skip)]
     pub templates: BTreeMap<String, Arc<[Template]>>,
+    /// Mixtures of grains by ID; a restart file does not hold them: the deck declares them again.
+    #[serde(skip)]
+    pub mixtures: BTreeMap<String, Arc<Mixture>>,
     /// Peridynamic bonds, from the first run on.
     pub families: Tracked<Option<Families>>,
     /// Cracks that wait for bonds to be there.

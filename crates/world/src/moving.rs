@@ -110,6 +110,7 @@ impl World {
             memo: _,
             controls: _,
             templates: _,
+            mixtures: _,
             materials: _,
             properties: _,
             folder: _,

@@ -16,15 +16,18 @@ pub enum Compat {
     Lammps2025,
     /// The same with what the LAMMPS of 2026 has mended, as far as it is known well enough.
     Lammps2026,
+    /// The right ones, with the words of LIGGGHTS.
+    Liggghts,
 }
 
 impl Compat {
     /// The words of decks and command lines with their meaning; the first one of each is printed. `lammps` is the newest version.
-    pub const NAMES: [(&'static str, Compat); 4] = [
+    pub const NAMES: [(&'static str, Compat); 5] = [
         ("none", Compat::Perigrain),
         ("lammps/2025", Compat::Lammps2025),
         ("lammps/2026", Compat::Lammps2026),
         ("lammps", Compat::Lammps2026),
+        ("liggghts", Compat::Liggghts),
     ];
 
     /// The meaning of a word.
@@ -39,12 +42,17 @@ impl Compat {
 
     /// Whether LAMMPS' artefacts are wanted, of whichever version.
     pub fn lammps(self) -> bool {
+        matches!(self, Self::Lammps2025 | Self::Lammps2026)
+    }
+
+    /// Whether it is another one than a deck has by itself.
+    pub fn is_chosen(self) -> bool {
         self != Self::Perigrain
     }
 
     /// The words of a log's first line about it, after the number of threads.
     pub fn describe(self) -> String {
-        if self.lammps() { format!(", compat {}", self.name()) } else { String::new() }
+        if self.is_chosen() { format!(", compat {}", self.name()) } else { String::new() }
     }
 }
 

@@ -93,7 +93,7 @@ fn begin(o: &Options, log: &Log, known: Rc<RefCell<Known>>) -> Result<Repl> {
     deck::catch_interrupts(&session, &progress);
     let mut switches: Vec<String> =
         o.vars.iter().map(|(name, values)| format!("variable {name} index {}", values.join(" "))).collect();
-    switches.extend(o.compat.lammps().then(|| format!("compat {}", o.compat.name())));
+    switches.extend(o.compat.is_chosen().then(|| format!("compat {}", o.compat.name())));
     let repl = Repl {
         session,
         log: log.clone(),

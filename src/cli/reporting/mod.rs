@@ -167,7 +167,7 @@ fn facts(o: &Options, s: &Session) -> Vec<(String, String)> {
         out.push(("boundary".into(), faces.collect::<Vec<_>>().join(" ")));
     }
     out.push(("time simulated".into(), perigrain_base::math::cformat::general(w.clock.time(), 6)));
-    if o.compat.lammps() {
+    if o.compat.is_chosen() {
         out.push(("compat".into(), o.compat.name().into()));
     }
     let vars = o.vars.iter().map(|(name, values)| (format!("variable {name}"), values.join(" ")));

@@ -4,6 +4,7 @@ mod bench;
 mod declarations;
 mod formulas;
 mod language;
+mod liggghts;
 mod program;
 mod prompt;
 mod restart;
@@ -17,8 +18,15 @@ use perigrain_styles::Doc;
 pub type Entry = (&'static str, Doc);
 
 /// What is no command: how decks are written, what formulas know, how the program is called.
-pub const TOPICS: &[Entry] =
-    &[program::PERIGRAIN, prompt::PROMPT, verify::VERIFY, bench::BENCH, language::DECKS, formulas::FORMULAS];
+pub const TOPICS: &[Entry] = &[
+    program::PERIGRAIN,
+    prompt::PROMPT,
+    verify::VERIFY,
+    bench::BENCH,
+    liggghts::LIGGGHTS,
+    language::DECKS,
+    formulas::FORMULAS,
+];
 
 /// Commands that act by themselves, in the order of the manual.
 pub const COMMANDS: &[Entry] = &[

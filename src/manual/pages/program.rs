@@ -13,6 +13,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain plan|run DECK [switch …]\n\
             perigrain check DECK … [--json] [switch …]\n\
             perigrain fmt [--check|--diff] FILE|- …\n\
+            perigrain translate IN [-o OUT] [-to perigrain|lammps]\n\
             perigrain lsp\n\
             perigrain sweep DECK -each NAME VALUE … [switch …]\n\
             perigrain bench DECK -each NAME VALUE … -measure WORD … [switch …]\n\
@@ -32,6 +33,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain check in.plate\n\
             perigrain check --json in.plate\n\
             perigrain fmt --diff in.plate\n\
+            perigrain translate in.conveyor -o in.native\n\
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
@@ -52,6 +54,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) runs a deck. The 
     continuations four blanks in, no blanks at the ends of lines and one empty line at most; words, quoted texts, `$(…)` and \
     line endings stay as they are, and a deck that cannot be read is refused. `--check` writes nothing and fails where a \
     deck would change, `--diff` shows the lines; `fmt -` reads standard input and writes to standard output.\n\
+    - `translate` writes a deck of LIGGGHTS as a native one: see [liggghts](liggghts.md).\n\
     - `lsp` answers an editor while decks are written: see [In your editor](../editor/README.md).\n\
     - `plan` prints what each step of the deck's runs will do, in which order, and what was left out and why: each plan \
     once, with the lines whose runs have it and how often. It makes the particles that the first run begins with, so that \
@@ -87,6 +90,7 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) runs a deck. The 
     - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
     - `-view [PORT]`: shows the run in a browser on this machine while it runs, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
+    - `-compat liggghts`: the deck has the words of [LIGGGHTS](liggghts.md), from its first line on;\n\
     - `-ranks N`: N processes of this machine run the deck together, as `mpirun -n N perigrain -in DECK` does with any MPI on one machine or several (`perigrain ranks` says which library \
     connects them, and how fast); results are the same bits for any N, files are written by the first rank. `sweep`, `bench` and `-partition` share their runs out to ranks instead;\n\
     - `-partition MxN …`, `-p`: runs the deck M times beside each other, each time with N threads, as LAMMPS' partitions (`4x1 2x8` are six); under `mpirun` or with `-ranks` each rank has some of them; `-plog FILE|none`, \

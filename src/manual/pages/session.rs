@@ -169,12 +169,14 @@ pub(super) const COMPAT: Entry = (
     "compat",
     Doc {
         syntax: Syntax::Behind(Compatibility::GRAMMAR),
-        summary: "Gives LAMMPS' numbers also where LAMMPS is wrong.",
+        summary: "Gives LAMMPS' numbers also where LAMMPS is wrong, or reads the words of LIGGGHTS.",
         text: "The same as `-compat lammps` on the command line. [Coming from LAMMPS](../coming-from-lammps.md) lists what \
             it changes and by how much; the log lists what concerns the deck. `none` goes back. LAMMPS has no such \
             command.\n\n\
             `lammps/2025` is LAMMPS 22Jul2025, whose numbers have been compared. `lammps/2026`, which `lammps` alone stands for, is the same but \
-            for what LAMMPS has mended in 2026; that page lists it.",
+            for what LAMMPS has mended in 2026; that page lists it.\n\n\
+            `liggghts` reads the lines that follow as [LIGGGHTS](liggghts.md) means them. A deck with a word that only LIGGGHTS \
+            has is read so by itself; `none` above that word forbids it.",
         example: "compat lammps",
     },
 );

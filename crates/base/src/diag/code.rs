@@ -176,6 +176,9 @@ codes! {
     OTHER_SWEEP = 147, "the sweep in this folder is another",
         "The journal in the folder of a sweep is of another deck, other runs or another version of perigrain, a file that runs have read has changed since, or another sweep is at work there. Results of both in one table would be of no use. `-anew` discards the earlier runs, `-out DIR` puts the new ones elsewhere.",
         "", "";
+    NO_COUNTERPART = 148, "a word of LIGGGHTS without counterpart",
+        "The deck is one of LIGGGHTS, and perigrain has nothing that does what this word does. The help names what comes nearest. `Coming from LIGGGHTS` lists what is read.",
+        "units si\natom_style granular\nfix cfd all couple/cfd couple_every 100 mpi", "units si\natom_style granular";
     LETTERS = 149, "a character that looks like another",
         "Web pages and word processors put in blanks that are none (U+00A0, U+200B and others), byte order marks, curly quotes and minus signs that are no ASCII. They are read as what they look like, as LAMMPS does, outside of comments; quotes and signs also outside of quoted texts. Type them anew where they are not meant.",
         "print\u{a0}\"x\"", "print \"x\"";
@@ -209,6 +212,9 @@ codes! {
         "variable late equal step\nfix 2 all halt 1 v_late > 5 error hard\nrun 10", "variable late equal step\nfix 2 all halt 1 v_late > 5 error soft\nrun 10";
     COMPAT = 301, "LAMMPS does otherwise",
         "A place where LAMMPS is wrong (22Jul2025, in part mended in 2026) and perigrain is not, unless `-compat lammps` is on. `Coming from LAMMPS` lists all of them.",
+        "", "";
+    DIALECT = 305, "read as LIGGGHTS means it",
+        "The first word that only LIGGGHTS has makes the rest of the deck one of LIGGGHTS, as `-compat liggghts` does; `compat none` above it forbids that. Other notes with this code name words that have no effect here, and numbers that were made whole. `perigrain translate` writes the native lines.",
         "", "";
     MATERIAL = 302, "material questionable",
         "The material data contradict the model, as nu other than 1/4 with bond-based peridynamics. Where `form` selects the modulus that bonds keep, this is a note, else a warning.",

@@ -54,7 +54,12 @@ fn convert(d: &Diagnostic, sources: &Sources) -> cs::Diagnostic<usize> {
         .with_code(d.code.to_string())
         .with_message(&d.message)
         .with_labels(primary.into_iter().chain(others).collect())
-        .with_notes(d.help.iter().map(|h| format!("help: {h}")).collect())
+        .with_notes(d.help.iter().map(|h| remark(h)).collect())
+}
+
+/// A remedy, or a remark that begins with `note: `.
+fn remark(text: &str) -> String {
+    if text.starts_with("note: ") { text.to_string() } else { format!("help: {text}") }
 }
 
 /// The byte range of a span, clamped to its text and to whole characters; `None` if there is no such text.

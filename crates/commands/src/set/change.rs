@@ -79,6 +79,12 @@ pub enum Change {
     ),
     /// The angular velocity.
     Omega(#[word(name = "WX WY WZ", what = "the angular velocity")] [PerAtom; 3]),
+    /// A component of the angular velocity; not in LAMMPS.
+    Omegax(#[word(name = "W", what = "the angular velocity")] PerAtom),
+    /// A component of the angular velocity; not in LAMMPS.
+    Omegay(#[word(name = "W", what = "the angular velocity")] PerAtom),
+    /// A component of the angular velocity; not in LAMMPS.
+    Omegaz(#[word(name = "W", what = "the angular velocity")] PerAtom),
     /// The orientation: turned by THETA degrees about an axis of any length; LAMMPS, and `-compat lammps`, turn farther about an axis that
     /// is not of unit length.
     Quat {
@@ -206,7 +212,10 @@ impl Change {
             | Change::Z(p)
             | Change::Vx(p)
             | Change::Vy(p)
-            | Change::Vz(p) => varies(&p.0),
+            | Change::Vz(p)
+            | Change::Omegax(p)
+            | Change::Omegay(p)
+            | Change::Omegaz(p) => varies(&p.0),
             Change::Strength(Or::Else(p)) | Change::Stiffness(Or::Else(p)) => varies(&p.0),
         }
     }
@@ -217,6 +226,7 @@ impl Change {
         let there = match self {
             Change::Mass(_) | Change::Density(_) => style.sphere || style.peri,
             Change::Disc(_) | Change::Diameter(_) | Change::Omega(_) => style.sphere,
+            Change::Omegax(_) | Change::Omegay(_) | Change::Omegaz(_) => style.sphere,
             Change::Radius(_) => style.sphere && style.peri,
             Change::Strength(_) | Change::Stiffness(_) | Change::Volume(_) => style.peri,
             Change::Quat { .. } | Change::AnyQuat(_) => style.oriented,
@@ -464,6 +474,10 @@ fn change_particles(cx: &mut ActCx, item: &Given<Change>, chosen: &[usize]) -> R
         Change::Vx(p) | Change::Vy(p) | Change::Vz(p) => {
             let (d, v) = (usize::from(item.word.text.as_bytes()[1] - b'x'), checked(&p.0, "", None)?);
             chosen.iter().for_each(|&i| cx.world.particles.v[i][d] = v[i]);
+        }
+        Change::Omegax(p) | Change::Omegay(p) | Change::Omegaz(p) => {
+            let (d, v) = (usize::from(item.word.text.as_bytes()[5] - b'x'), checked(&p.0, "", None)?);
+            chosen.iter().for_each(|&i| cx.world.particles.omega[i][d] = v[i]);
         }
     }
     Ok(chosen.len())

@@ -2,7 +2,7 @@
 
 use super::rules::{Curvature, Rule, Rules};
 use crate::together::Met;
-use crate::{Arm, Geometry, Motion};
+use crate::{Arm, Ends as Sides, Geometry, Motion};
 use perigrain_base::math::periods::Periods;
 use perigrain_base::math::vec3::{Vec3, add, length};
 use perigrain_neigh::list::{Pair, difference};
@@ -166,5 +166,14 @@ impl Met for Ends<'_> {
             others[lane] = self.pairs[k[lane]].j;
         }
         Some(others)
+    }
+
+    fn ends(&self, g: &Geometry, k: usize) -> Sides {
+        let (grains, p) = (self.grains, &self.pairs[k]);
+        let mass = |i: u32| match grains.frozen.get(i as usize) {
+            Some(true) => f64::INFINITY,
+            _ => grains.mass[i as usize],
+        };
+        Sides::of_spheres(g.radii, [mass(p.i), mass(p.j)])
     }
 }

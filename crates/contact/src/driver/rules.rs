@@ -49,6 +49,11 @@ impl Rules {
         Self { types, table: vec![None; types * types] }
     }
 
+    /// The number of types.
+    pub fn types(&self) -> usize {
+        self.types
+    }
+
     /// Sets the rule of two types.
     pub fn set(&mut self, a: u16, b: u16, rule: Rule) {
         let (a, b) = (usize::from(a) - 1, usize::from(b) - 1);

@@ -4,7 +4,7 @@ use super::Alike;
 use super::found::Found;
 use super::lists::{FILL, List, Short};
 use super::sweep::Cx;
-use crate::{Geometry, Granular, Motion};
+use crate::{Ends, Geometry, Granular, Motion};
 use perigrain_base::math::lanes::{Lanes, load_rows, place, store_rows};
 use perigrain_base::math::vec3::{SIX, Vec3, dot, scale, sub};
 use perigrain_base::par;
@@ -274,7 +274,11 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             }
 
             let g = self.geometry.at(group);
-            let wrench = law.contact(g, &own, &other, &mut history[..memory], cx.step);
+            let mut ends = Ends::none(g.overlap);
+            if law.needs_ends() {
+                ends = self.ends(cx, g, at);
+            }
+            let wrench = law.contact_of(g, [&own, &other], ends, &mut history[..memory], cx.step);
             self.force.put(group, Outgoing::of(wrench.force));
             self.torque.put(group, [Outgoing::of(wrench.torque_i), Outgoing::of(wrench.torque_j)]);
             if cx.deeds.is_some() {
@@ -295,6 +299,26 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 store_rows(past, part, four);
             }
         }
+    }
+
+    /// The sides of some contacts; not inlined, so that laws without torques in their history do not pay for it.
+    ///
+    /// # Safety
+    /// There must be such contacts, whose entries are grains.
+    #[inline(never)]
+    unsafe fn ends(&self, cx: &Cx, g: &Geometry<V>, at: usize) -> Ends<V> {
+        let (mut inertia, mut side) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            // SAFETY: the caller's guarantee.
+            let radii = unsafe { [number(&g.radii[0], lane), number(&g.radii[1], lane)] };
+            let [i, j] = [self.i[at + lane], self.j[at + lane]].map(|k| k as usize);
+            // Negative masses are those of frozen grains.
+            let masses = [i, j].map(|k| if cx.mass[k] < 0.0 { f64::INFINITY } else { cx.mass[k] });
+            inertia[lane] = Ends::of_spheres(radii, masses).inertia;
+            side[lane] = if cx.tag[i] <= cx.tag[j] { 1.0 } else { -1.0 };
+        }
+        // SAFETY: the caller's guarantee.
+        unsafe { Ends { inertia: V::of(inertia), side: V::of(side) } }
     }
 
     /// Last stage: adds the forces and torques of one contact.

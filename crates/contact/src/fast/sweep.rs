@@ -30,6 +30,7 @@ pub(super) struct Cx<'a> {
     /// Properties that are equal for all grains.
     pub alike: Alike,
     pub kind: &'a [u16],
+    pub tag: &'a [u32],
     pub shifts: &'a [[f64; 4]; 32],
     pub force: par::Shared<'a, Vec3>,
     pub torque: par::Shared<'a, Vec3>,
@@ -151,6 +152,7 @@ impl Fast {
             mass: if self.signed.is_empty() { grains.mass } else { &self.signed },
             alike: self.alike,
             kind: grains.kind,
+            tag: grains.tag,
             shifts: &self.shifts,
             force: par::Shared::new(sums.force),
             torque: par::Shared::new(sums.torque),

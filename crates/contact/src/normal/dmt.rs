@@ -40,7 +40,7 @@ impl NormalLaw for Dmt {
         self.elastic.energy(g, memory) - pull_off * g.overlap
     }
 
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
-        self.elastic.power_law(curvature)
+    fn power_law(&self, curvature: f64, mass: f64) -> Option<[f64; 2]> {
+        self.elastic.power_law(curvature, mass)
     }
 }

@@ -190,7 +190,7 @@ impl NormalLaw for Eepa {
         k * self.exponent * power(depth, self.exponent - 1.0)
     }
 
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
+    fn power_law(&self, curvature: f64, _mass: f64) -> Option<[f64; 2]> {
         Some([self.unloading(self.loading(curvature)), self.exponent])
     }
 }

@@ -39,7 +39,7 @@ impl NormalLaw for Hertz {
         0.4 * self.stiffness * (g.curvature * depth).sqrt() * depth * depth
     }
 
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
+    fn power_law(&self, curvature: f64, _mass: f64) -> Option<[f64; 2]> {
         (self.stiffness > 0.0).then(|| [self.stiffness * curvature.sqrt(), 1.5])
     }
 }

@@ -42,7 +42,7 @@ impl NormalLaw for Hooke {
         (self.stiffness * (g.overlap + small) - self.stiffness * (g.overlap - small)) / (2.0 * small)
     }
 
-    fn power_law(&self, _curvature: f64) -> Option<[f64; 2]> {
+    fn power_law(&self, _curvature: f64, _mass: f64) -> Option<[f64; 2]> {
         (self.stiffness > 0.0).then_some([self.stiffness, 1.0])
     }
 }

@@ -91,7 +91,7 @@ impl NormalLaw for Jkr {
         2.0 * (PI * self.cohesion * a / e).sqrt() - a * a / curvature
     }
 
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
-        Hertz { stiffness: self.stiffness }.power_law(curvature)
+    fn power_law(&self, curvature: f64, mass: f64) -> Option<[f64; 2]> {
+        Hertz { stiffness: self.stiffness }.power_law(curvature, mass)
     }
 }

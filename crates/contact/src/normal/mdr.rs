@@ -79,7 +79,7 @@ impl NormalLaw for Mdr {
         self.elastic.tangent(g)
     }
 
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
-        self.elastic.power_law(curvature)
+    fn power_law(&self, curvature: f64, mass: f64) -> Option<[f64; 2]> {
+        self.elastic.power_law(curvature, mass)
     }
 }

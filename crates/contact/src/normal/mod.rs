@@ -8,6 +8,8 @@ mod dmt;
 mod eepa;
 mod hertz;
 mod hooke;
+mod hooke_hysteresis;
+mod hooke_velocity;
 mod jkr;
 mod mdr;
 mod nothing;
@@ -81,9 +83,9 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
         0.0
     }
 
-    /// k and n of an upper bound k δⁿ of the force, from which the time step is estimated; `None` without a
-    /// force.
-    fn power_law(&self, curvature: f64) -> Option<[f64; 2]>;
+    /// k and n of an upper bound k δⁿ of the force at this effective radius and mass, from which the time step is
+    /// estimated; `None` without a force.
+    fn power_law(&self, curvature: f64, mass: f64) -> Option<[f64; 2]>;
 }
 
 macro_rules! normal_laws {
@@ -162,8 +164,8 @@ macro_rules! normal_laws {
             }
 
             /// See [`NormalLaw::power_law`].
-            pub fn power_law(&self, curvature: f64) -> Option<[f64; 2]> {
-                match self { $(Self::$Law(law) => law.power_law(curvature),)* }
+            pub fn power_law(&self, curvature: f64, mass: f64) -> Option<[f64; 2]> {
+                match self { $(Self::$Law(law) => law.power_law(curvature, mass),)* }
             }
         }
     };
@@ -175,6 +177,8 @@ macro_rules! table {
         normal_laws! {
             nothing::Nothing: NONE;
             hooke::Hooke: HOOKE;
+            hooke_velocity::HookeVelocity: HOOKE_VELOCITY;
+            hooke_hysteresis::HookeHysteresis: HOOKE_HYSTERESIS;
             hertz::Hertz: HERTZ, HERTZ_MATERIAL;
             dmt::Dmt: DMT;
             jkr::Jkr: JKR;

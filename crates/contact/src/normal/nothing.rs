@@ -22,7 +22,7 @@ impl NormalLaw for Nothing {
         0.0
     }
 
-    fn power_law(&self, _curvature: f64) -> Option<[f64; 2]> {
+    fn power_law(&self, _curvature: f64, _mass: f64) -> Option<[f64; 2]> {
         None
     }
 }

@@ -34,7 +34,7 @@ impl NormalLaw for Quadratic {
         self.stiffness * g.overlap.max(0.0).powi(3) / 3.0
     }
 
-    fn power_law(&self, _curvature: f64) -> Option<[f64; 2]> {
+    fn power_law(&self, _curvature: f64, _mass: f64) -> Option<[f64; 2]> {
         (self.stiffness > 0.0).then_some([self.stiffness, 2.0])
     }
 }

@@ -8,6 +8,7 @@ use perigrain_world::contacts::{Contacts, WallSpring, WallTouch};
 impl WallSweep {
     /// The springs of the contacts of the last evaluation.
     pub fn springs(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallSpring> {
+        let law = &law.on_wall();
         let spring = |(t, history): (&Touch, &[f64])| {
             let i = t.grain as usize;
             let g = geometry(&t.near, grains.radius[i], grains.mass[i]);
@@ -20,6 +21,7 @@ impl WallSweep {
 
     /// The contacts of the last evaluation with stored energy and work; `memory` is from that evaluation.
     pub fn touches(&self, grains: &Spheres, law: &Granular, memory: &Contacts) -> Vec<WallTouch> {
+        let law = &law.on_wall();
         let touch = |((t, wrench), history): ((&Touch, &crate::Wrench), &[f64])| {
             let i = t.grain as usize;
             let stored = law.stored(&geometry(&t.near, grains.radius[i], grains.mass[i]), history);

@@ -51,7 +51,7 @@ fn floor() -> Planes {
 
 /// All of them that belong to the group.
 fn meeting(mask: &[u32], group: u32) -> Meeting<'_> {
-    Meeting { mask, group, rows: std::slice::from_ref(&EVERY) }
+    Meeting { mask, group, rows: std::slice::from_ref(&EVERY), kinds: None }
 }
 
 static EVERY: Range<usize> = 0..usize::MAX;
@@ -126,6 +126,24 @@ fn a_tube_is_hollow_inside_and_turns() {
     // For a grain too large for the tube the wall counts as flat.
     assert_eq!(effective(3.0, -2.0), 3.0);
     assert!((effective(1.0, -2.0) - 2.0).abs() < 1e-15);
+}
+
+// LIGGGHTS 3.8.0: the coordinates of the centre of a cylinder about y are z, x; shear turns it at the grain's distance.
+#[test]
+fn a_cylinder_off_the_axis_turns_at_the_grains_distance() {
+    let wall = Cylinder { axis: 1, center: [2.0, 1.0], radius: 5.0, velocity: [0.0; 3], omega: 3.0 };
+    let mut out = vec![];
+    wall.near([1.0, 7.0, 6.5], 1.0, &mut out);
+    assert_eq!((out[0].normal, out[0].distance, out[0].radius), ([-0.0, 0.0, -1.0], 0.5, 0.0));
+    // About +y a point at +z goes to +x, at the distance of the centre, 4.5.
+    assert_eq!(out[0].velocity, [13.5, 0.0, 0.0]);
+    out.clear();
+    wall.near([6.5, 0.0, 2.0], 1.0, &mut out);
+    assert_eq!((out[0].normal[0], out[0].velocity[2]), (1.0, -16.5));
+    out.clear();
+    let shifted = Shifted { wall: &wall, shift: [0.0, 0.0, 0.25], velocity: [0.0, 1.0, 0.0] };
+    shifted.near([1.0, 7.0, 6.75], 1.0, &mut out);
+    assert_eq!((out[0].distance, out[0].velocity), (0.5, [13.5, 1.0, 0.0]));
 }
 
 #[test]

@@ -155,7 +155,8 @@ impl Rain {
         };
         let p = &w.particles;
         let widest = p.radius.iter().fold(own, |a, r| r.max(a));
-        let mut crowd = Crowd::new(domain, lo, hi, own + widest);
+        let expected = p.len() + self.batch as usize;
+        let mut crowd = Crowd::new(domain, lo, hi, own + widest, expected);
         let middle: [f64; 3] = std::array::from_fn(|d| 0.5 * (lo[d] + hi[d]));
         for (x, r) in p.x.iter().zip(&p.radius) {
             let off = domain.minimum_image(std::array::from_fn(|d| x[d] - middle[d]));

@@ -1,15 +1,17 @@
-//! fix wall/gran: planes normal to an axis, or a cylinder about z, as walls for grains.
+//! fix wall/gran: planes normal to an axis, or a cylinder, as walls for grains.
 
 use super::planes::{Followed, Pair};
+use super::servo::{self, Servo, Steered};
 use super::words::{self, Material, Rest};
-use super::{Common, Declared, Form, Surface, needs_spheres, not_across_periodic};
+use super::{Common, Declared, Form, Surface, needs_spheres, not_across_periodic, op};
 use crate::elapsed::Elapsed;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_contact::walls::{Planes, Tube, Wall};
+use perigrain_contact::Wrench;
+use perigrain_contact::walls::{Cylinder, Planes, Touch, Tube, Wall};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Stage, Tick};
-use perigrain_styles::words::{At, Axis, Each, Kind, Nullable, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Axis, Each, Form as Behind, Kind, Nullable, Syntax, Value, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{INFINITE, Region, Shape};
 use perigrain_world::{Face, Key, Numbers, Outline, World};
@@ -25,8 +27,8 @@ impl Style for WallGran {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
-            summary: "Flat walls across an axis, or a cylinder about z, on which grains lean.",
+            syntax: Syntax::Forms(const { &[Behind::behind(Line::GRAMMAR), servo::MODIFIED] }),
+            summary: "Flat walls across an axis, or a cylinder, on which grains lean.",
             text: "Grains feel a wall as a grain of infinite mass, with the force style's law: overlap δ = R − r with r \
                    the distance of the centre, m̄ = m, R̄ = R on a plane, 1/R̄ = 1/R − 1/(2 R_c) inside a cylinder and \
                    + outside. With two planes a grain that is larger than the gap feels both (LAMMPS, and perigrain \
@@ -41,6 +43,9 @@ impl Style for WallGran {
                    `hooke/history`, `hertz/history` and the `…_classic` models on walls depend on the contact radius \
                    and lose it when they slide (until 2026); a cylinder with `shear x` or `y` also flies along that \
                    axis; sticky grains hold on to hollow walls and regions no longer than they touch.\n\n\
+                   `servo` moves the wall along its `axis` so that it presses on grains with a wanted force, as \
+                   described for `fix surface`; two planes move together. Not in LAMMPS, as are cylinders off the \
+                   axis.\n\n\
                    Not in LAMMPS: the global vector is the force on the wall (1–3), the torque on it (4–6) about the \
                    origin or the point `about`, and the heat that flows into it (7). Only grains near the wall are \
                    looked at, so that a wall far from most costs nothing. The particle deepest in the wall when one is \
@@ -60,6 +65,8 @@ struct Line {
     wall: At<Named>,
     #[word(flatten)]
     motions: Each<Moving>,
+    #[word(keyword, once, placed)]
+    servo: Option<At<servo::Line>>,
     #[word(flatten)]
     rest: Rest,
 }
@@ -74,8 +81,27 @@ enum Standing {
     Yplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
     /// Planes across z.
     Zplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
-    /// A cylinder about z.
-    Zcylinder(#[word(name = "R", what = "the radius of the cylinder", positive)] f64),
+    /// A cylinder about an axis parallel to x through y = c1, z = c2, which counts as flat; not in LAMMPS.
+    Xcylinder {
+        #[word(name = "R", what = "the radius of the cylinder", positive)]
+        radius: f64,
+        #[word(name = "c1 c2", what = "the place {} of the axis")]
+        center: [f64; 2],
+    },
+    /// The same parallel to y through z = c1, x = c2.
+    Ycylinder {
+        #[word(name = "R", what = "the radius of the cylinder", positive)]
+        radius: f64,
+        #[word(name = "c1 c2", what = "the place {} of the axis")]
+        center: [f64; 2],
+    },
+    /// A cylinder about z, whose curvature counts; or the same as the others parallel to z through x = c1, y = c2.
+    Zcylinder {
+        #[word(name = "R", what = "the radius of the cylinder", positive)]
+        radius: f64,
+        #[word(name = "c1 c2", what = "the place {} of the axis")]
+        center: Option<[f64; 2]>,
+    },
 }
 
 /// The wall; a region is that of another fix.
@@ -89,7 +115,7 @@ impl Value for Named {
             return Err(d.help("write `fix … wall/gran/region … region ID`").into());
         }
         if args.is_empty() {
-            args.expect("the wall: xplane yplane zplane or zcylinder")?;
+            args.expect("the wall: xplane yplane zplane xcylinder ycylinder or zcylinder")?;
         }
         Standing::value(what, args, cx).map(Self)
     }
@@ -109,7 +135,8 @@ enum Moving {
         #[word(positive, what = "the period")]
         period: f64,
     },
-    /// The wall moves in its own plane at V; a cylinder along z, or about z for x and y, clockwise seen from above.
+    /// The wall moves in its own plane at V; a cylinder along its axis. For another axis a cylinder about z turns clockwise seen from
+    /// above at the speed V, one with a centre right-handed at the angular velocity V, as seen from the centre of each grain.
     #[word(once)]
     Shear {
         #[word(name = "x|y|z", what = "direction of the motion")]
@@ -120,7 +147,7 @@ enum Moving {
 }
 
 /// The words that begin what stands behind the force.
-const WALLS: [&str; 5] = ["xplane", "yplane", "zplane", "zcylinder", "region"];
+const WALLS: [&str; 7] = ["xplane", "yplane", "zplane", "xcylinder", "ycylinder", "zcylinder", "region"];
 
 fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
     words::force(args, cx, &WALLS)
@@ -129,9 +156,14 @@ fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
 impl FixStyle for WallGran {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran")?;
-        let Line { force, wall, motions: Each(motions), rest } = read(args, cx)?;
+        let Line { force, wall, motions: Each(motions), servo, rest } = read(args, cx)?;
         let common = rest.common(force, [0.0; 3], cx)?;
-        let mut form = Flat { place: place(wall.value.0, wall.span, cx)?, motion: None };
+        let servo = servo.map(|at| at.value.servo(at.span)?.shifting(at.span)).transpose()?;
+        let mut form = Flat { place: place(wall.value.0, wall.span, cx)?, motion: None, servo };
+        if form.servo.is_some() && (!motions.is_empty() || form.follows()) {
+            let text = "a servo moves this wall: it has no other motion and follows no variable";
+            return fail(Code::CONFLICT, wall.span, text);
+        }
         if let [_, second, ..] = &motions[..] {
             return fail(Code::CONFLICT, second.word.span, "a wall has one motion: `wiggle` or `shear`");
         }
@@ -150,6 +182,8 @@ enum Place {
     Planes(Pair),
     /// Radius of a cylinder about z.
     Tube(f64),
+    /// A cylinder about any axis, which counts as flat: axis, centre, radius.
+    Cylinder(usize, [f64; 2], f64),
 }
 
 /// Motion of the wall.
@@ -165,6 +199,7 @@ enum Motion {
 struct Flat {
     place: Place,
     motion: Option<Motion>,
+    servo: Option<Servo>,
 }
 
 /// The place of a wall; refuses one across a direction that repeats.
@@ -173,13 +208,21 @@ fn place(wall: Standing, span: Span, cx: &BuildCx) -> Result<Place> {
         Standing::Xplane(places) => (Place::Planes(Pair::new(0, places)?), &[0]),
         Standing::Yplane(places) => (Place::Planes(Pair::new(1, places)?), &[1]),
         Standing::Zplane(places) => (Place::Planes(Pair::new(2, places)?), &[2]),
-        Standing::Zcylinder(radius) => (Place::Tube(radius), &[0, 1]),
+        Standing::Xcylinder { radius, center } => (Place::Cylinder(0, center, radius), &[1, 2]),
+        Standing::Ycylinder { radius, center } => (Place::Cylinder(1, center, radius), &[0, 2]),
+        Standing::Zcylinder { radius, center: Some(center) } => (Place::Cylinder(2, center, radius), &[0, 1]),
+        Standing::Zcylinder { radius, center: None } => (Place::Tube(radius), &[0, 1]),
     };
     not_across_periodic(cx, axes, span)?;
     Ok(place)
 }
 
 impl Flat {
+    /// Whether planes of it follow variables.
+    fn follows(&self) -> bool {
+        matches!(&self.place, Place::Planes(pair) if pair.follows())
+    }
+
     /// The motion of the wall; refuses those that it cannot have.
     fn moved(&self, moving: Moving) -> Result<Motion> {
         match moving {
@@ -201,6 +244,9 @@ impl Flat {
         match &self.place {
             Place::Tube(_) if axis != 2 => {
                 fail(Code::BAD_VALUE, at, "a cylinder about z can wiggle along z only")
+            }
+            Place::Cylinder(own, ..) if axis != *own => {
+                fail(Code::BAD_VALUE, at, "a cylinder can wiggle along its axis only")
             }
             Place::Planes(pair) if pair.axis == axis && pair.follows() => {
                 let text = "a plane that follows a variable cannot wiggle across itself";
@@ -224,6 +270,13 @@ impl Flat {
                 beyond.then(|| {
                     format!("a plane lies outside the box across {name}: grains are lost before they meet it")
                 })
+            }
+            Place::Cylinder(axis, center, r) => {
+                let dims = [(axis + 1) % 3, (axis + 2) % 3];
+                let far = |k: usize| (d.lo[dims[k]] - center[k]).abs().max((d.hi[dims[k]] - center[k]).abs());
+                let inside = *r <= far(0).hypot(far(1));
+                (!inside)
+                    .then(|| format!("the cylinder of radius {r} lies outside the box: no grain meets it"))
             }
             Place::Tube(r) => {
                 let r = *r;
@@ -254,32 +307,46 @@ impl Form for Flat {
     }
 
     fn outline(&self) -> Outline {
-        let radius = match &self.place {
+        let (axis, center, radius) = match &self.place {
             Place::Planes(pair) => return pair.outline(),
-            Place::Tube(radius) => *radius,
+            Place::Tube(radius) => (2, [0.0; 2], *radius),
+            // A region's centre is in the order of the axes.
+            Place::Cylinder(1, [z, x], radius) => (1, [*x, *z], *radius),
+            Place::Cylinder(axis, center, radius) => (*axis, *center, *radius),
         };
         Outline::new(move |w| {
             let Some(bounds) = w.domain.as_ref().map(perigrain_world::Domain::bounds) else { return vec![] };
             let (lo, hi) = (-INFINITE, INFINITE);
-            let tube = Region::inside(Shape::Cylinder { axis: 2, center: [0.0; 2], radius, lo, hi });
+            let tube = Region::inside(Shape::Cylinder { axis, center, radius, lo, hi });
             tube.outline(bounds)
         })
     }
 
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.options(args, cx)
+    }
+
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
-        self.warn_beyond(fix, cx)?;
+        if self.servo.is_none() {
+            self.warn_beyond(fix, cx)?;
+        }
+        // Plastic grains need their walls before any forces.
+        let stage = if fix.is_plastic() { Stage::PreForce } else { Stage::PostForce };
+        let key = fix.key(Self::STYLE);
+        let servo = self.servo.as_ref().map(|servo| servo.seal(key, stage, cx)).transpose()?;
         let stands = match &self.place {
             Place::Planes(pair) => {
-                // Plastic grains need their walls before any forces.
-                let stage = if fix.is_plastic() { Stage::PreForce } else { Stage::PostForce };
                 Stands::Planes(pair.seal(cx, stage, Key::new(&format!("{}/planes", fix.key(Self::STYLE))))?)
             }
             Place::Tube(radius) => Stands::Tube(*radius),
+            Place::Cylinder(axis, center, radius) => Stands::Cylinder(*axis, *center, *radius),
         };
+        let steered = servo.map(|servo| Steered::new(servo, cx.world()));
         Ok(Box::new(Running {
             stands,
             motion: self.motion,
-            key: fix.key(Self::STYLE),
+            steered,
+            key,
             outline: Key::new(&fix.id),
             offset: 0.0,
             velocity: [0.0; 3],
@@ -289,6 +356,14 @@ impl Form for Flat {
 }
 
 impl Flat {
+    /// Options of `fix_modify`.
+    fn options(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        match &mut self.servo {
+            Some(servo) => servo.modify(args, cx),
+            None => crate::options::<crate::Counted>(args, cx).map(drop),
+        }
+    }
+
     /// Warns of grains on the far side of a plane, which would push them out.
     fn warn_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
         let Place::Planes(pair) = &self.place else { return Ok(()) };
@@ -313,12 +388,15 @@ enum Stands {
     Planes(Followed),
     /// Radius of a cylinder about z.
     Tube(f64),
+    /// Axis, centre and radius of a cylinder that counts as flat.
+    Cylinder(usize, [f64; 2], f64),
 }
 
 /// The wall during a run.
 struct Running {
     stands: Stands,
     motion: Option<Motion>,
+    steered: Option<Steered>,
     key: Numbers,
     outline: Key<Outline>,
     /// Displacement along the axis of its motion.
@@ -351,6 +429,7 @@ impl Running {
                 // LAMMPS also moves a rotating cylinder along the axis that names the rotation.
                 self.velocity[axis] = if w.settings.lammps() { speed } else { 0.0 };
             }
+            (Motion::Shear(axis, speed), Stands::Cylinder(own, ..)) if axis != *own => self.spin = speed,
             (Motion::Shear(axis, speed), _) => self.velocity[axis] = speed,
         }
         (self.offset - before).abs()
@@ -367,18 +446,41 @@ impl Surface for Running {
                 *outline = look;
             }
         }
+        if let Some(steered) = &mut self.steered {
+            way += steered.advance(w, t, self.outline)?;
+        }
         Ok(way + self.motion.map_or(0.0, |motion| self.go(motion, w, t)))
     }
 
     fn stands(&self) -> bool {
         let still = match &self.stands {
             Stands::Planes(planes) => planes.stand(),
-            Stands::Tube(_) => true,
+            Stands::Tube(_) | Stands::Cylinder(..) => true,
         };
-        still && self.motion.is_none()
+        still && self.motion.is_none() && self.steered.is_none()
+    }
+
+    fn feel(&mut self, w: &mut World, _: &[(&Touch, &Wrench)], felt: [f64; op::FELT], _t: &Tick) {
+        if let Some(steered) = &self.steered {
+            steered.feel(w, felt);
+        }
+    }
+
+    fn feels(&self) -> bool {
+        self.steered.is_some()
     }
 
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+        match &self.steered {
+            Some(steered) => self.stand(w, &mut |wall| see(&steered.shifted(wall))),
+            None => self.stand(w, see),
+        }
+    }
+}
+
+impl Running {
+    /// The wall without what a servo does.
+    fn stand(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
         let velocity = self.velocity;
         match &self.stands {
             Stands::Planes(planes) => {
@@ -393,6 +495,10 @@ impl Surface for Running {
                     velocity
                 };
                 see(&Planes { axis, lo, hi, velocity: [across(0), across(1)], nearer });
+            }
+            Stands::Cylinder(axis, center, radius) => {
+                let (axis, center, radius) = (*axis, *center, *radius);
+                see(&Cylinder { axis, center, radius, velocity, omega: self.spin });
             }
             Stands::Tube(radius) => {
                 let lammps = w.settings.lammps();

@@ -1,21 +1,26 @@
 //! fix wall/mesh: a surface of triangles from a file as a wall, at rest or moving.
 
+mod leaning;
 mod moving;
 
 use super::words::{self, Material, Rest};
 use super::{Common, Declared, Form, Surface, needs_spheres};
 use crate::elapsed::Elapsed;
+use crate::surface::SurfaceId;
 use crate::{Fix, FixStyle};
+use leaning::Leaning;
 use moving::{Motion, Moving, Placed, Running};
 use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{cross, dot, length, scale, sub};
-use perigrain_contact::walls::{Wall, WallSweep};
+use perigrain_contact::Wrench;
+use perigrain_contact::walls::{Touch, Wall};
 use perigrain_lang::{Args, Word};
 use perigrain_mesh::Facets;
 use perigrain_plan::Tick;
+use perigrain_styles::mesh_surface::SURFACES;
 use perigrain_styles::triangles::{self, Placing};
-use perigrain_styles::words::{Syntax, Words, read};
+use perigrain_styles::words::{At, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::{Key, Numbers, Outline, World};
 use std::sync::Arc;
@@ -43,6 +48,7 @@ impl Style for WallMesh {
                    corners that miss each other by less than a millionth of the mesh and faces that lie on each other \
                    make no seams either. Triangles without area are left out with a warning; edges that border one \
                    triangle only (holes, or the rim of a plate) are counted in another one.\n\n\
+                   `of ID …` leans on surfaces of `fix surface` in place of a file.\n\n\
                    Global vector: force (1–3) and torque (4–6) on the wall, about the origin, the axis' point or \
                    `about`. Local values, a row for each triangle: its number in the file, the force on it (3), the \
                    work of sliding Σ F_n |v_t| Δt since the fix was declared, that work by area; `dump local` writes \
@@ -60,13 +66,13 @@ struct Line {
     #[word(name = "wall")]
     wall: Solid,
     /// The factor on the numbers of the file.
-    #[word(keyword, name = "S", what = "the scale", positive, default = 1.0)]
-    scale: f64,
+    #[word(keyword, name = "S", what = "the scale", positive, placed, shown = "1")]
+    scale: Option<At<f64>>,
     /// What is added to them then, in box units [length].
-    #[word(keyword, name = "X Y Z", what = "{}", shown = "0 0 0")]
-    shift: [f64; 3],
-    #[word(keyword = "move", once)]
-    motion: Option<Moving>,
+    #[word(keyword, name = "X Y Z", what = "{}", placed, shown = "0 0 0")]
+    shift: Option<At<[f64; 3]>>,
+    #[word(keyword = "move", once, placed)]
+    motion: Option<At<Moving>>,
     #[word(flatten)]
     rest: Rest,
 }
@@ -77,16 +83,35 @@ struct Line {
 enum Solid {
     /// A file of triangles, STL (text or binary), OBJ, PLY or VTP, as for `region mesh`.
     Mesh(#[word(name = "FILE", what = "the name of a file of triangles", kind = Kind::File)] Word),
+    /// Surfaces of `fix surface`, which have their own place, motion, velocity and temperature.
+    Of(#[word(name = "surfaceID", what = "the ID of a surface", least = 1)] Vec<SurfaceId>),
 }
 
 fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
-    words::force(args, cx, &["mesh"])
+    words::force(args, cx, &["mesh", "of"])
 }
 
 impl FixStyle for WallMesh {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/mesh")?;
-        let Line { force, wall: Solid::Mesh(file), scale, shift, motion, rest } = read(args, cx)?;
+        let Line { force, wall, scale, shift, motion, rest } = read(args, cx)?;
+        let file = match wall {
+            Solid::Mesh(file) => file,
+            Solid::Of(ids) => {
+                let words = [scale.map(|at| at.span), shift.map(|at| at.span), motion.map(|at| at.span)];
+                if let Some(span) = words.into_iter().flatten().next() {
+                    let d =
+                        Diagnostic::error(Code::CONFLICT, span, "a surface has its place by its own line");
+                    return Err(d
+                        .help("write it in the line of `fix surface`, a motion as `fix move/mesh`")
+                        .into());
+                }
+                return lean(ids, force, rest, cx);
+            }
+        };
+        let scale = scale.map_or(1.0, |at| at.value);
+        let shift = shift.map_or([0.0; 3], |at| at.value);
+        let motion = motion.map(|at| at.value);
         let motion = motion.map_or(Motion::Rest, Moving::motion);
         let common = rest.common(force, motion.point().unwrap_or_default(), cx)?;
         let (mesh, numbers) = surface(&file, Placing { scale, shift }, cx)?;
@@ -95,6 +120,22 @@ impl FixStyle for WallMesh {
             form: Triangles { mesh: Arc::new(mesh), numbers: numbers.into(), motion },
         }))
     }
+}
+
+/// A wall of surfaces of other lines.
+fn lean(ids: Vec<SurfaceId>, force: Material, rest: Rest, cx: &BuildCx) -> Result<Box<dyn Fix>> {
+    let all = cx.world.facts.get(*SURFACES);
+    let of = |id: &SurfaceId| all.and_then(|all| all.look_up(&id.0.text)?.temperature.clone());
+    let first = ids.first().and_then(of);
+    if let Some(other) = ids.iter().find(|id| of(id) != first) {
+        let text = format!("surface `{}` has another temperature than the first", other.0.text);
+        let d = Diagnostic::error(Code::CONFLICT, other.0.span, text);
+        return Err(d.help("give surfaces of each temperature a wall of their own").into());
+    }
+    let span = ids.first().map_or(cx.span, |id| id.0.span);
+    let common = rest.with_temperature(first, span)?.common(force, [0.0; 3], cx)?;
+    let ids = ids.into_iter().map(|id| (id.0.text, id.0.span)).collect();
+    Ok(Box::new(Declared { common, form: Leaning { ids } }))
 }
 
 /// Reads the file's triangles and places them; returns their numbers in the file as well.
@@ -172,13 +213,13 @@ impl Surface for Tracked {
         see(&Placed(&self.running));
     }
 
-    fn local(&mut self, w: &mut World, contacts: &WallSweep, t: &Tick) -> Vec<f64> {
+    fn local(&mut self, w: &mut World, contacts: &[(&Touch, &Wrench)], t: &Tick) -> Vec<f64> {
         let mut rows: Vec<[f64; 6]> = vec![[0.0; 6]; self.areas.len()];
         let mut work = w.memo.remove(self.work).unwrap_or_default();
         work.resize(self.areas.len(), 0.0);
         let p = &w.particles;
         let mut done: Vec<rows::Row<2, 1>> = vec![];
-        for (touch, wrench) in contacts.contacts() {
+        for (touch, wrench) in contacts {
             let (i, k, n) = (touch.grain as usize, touch.near.part as usize, touch.near.normal);
             let Some(row) = rows.get_mut(k) else { continue };
             (0..3).for_each(|d| row[1 + d] -= wrench.force[d]);

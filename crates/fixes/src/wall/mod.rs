@@ -1,20 +1,23 @@
 //! Walls for grains: shared by the fixes wall/gran, wall/gran/region and wall/mesh.
 
 pub mod gran;
+mod lent;
 pub mod mesh;
 mod op;
 mod peace;
 mod planes;
 mod plastic;
 pub mod region;
+pub mod servo;
 mod words;
 
 use super::window::forget;
-use super::{Fix, needs_spheres};
+use super::{Counted, Fix, needs_spheres, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_contact::Wrench;
 use perigrain_contact::normal::plastic_grain;
-use perigrain_contact::walls::{Wall, WallSweep};
-use perigrain_lang::Param;
+use perigrain_contact::walls::{Touch, Wall};
+use perigrain_lang::{Args, Param};
 use perigrain_pairs::contact::durations;
 use perigrain_plan::{Op, Tick};
 use perigrain_styles::critical::WALL_SPRINGS;
@@ -40,8 +43,21 @@ trait Surface: Send {
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall));
 
     /// Stores local values of the contacts found, [`Form::LOCAL`] columns.
-    fn local(&mut self, _w: &mut World, _contacts: &WallSweep, _t: &Tick) -> Vec<f64> {
+    fn local(&mut self, _w: &mut World, _contacts: &[(&Touch, &Wrench)], _t: &Tick) -> Vec<f64> {
         vec![]
+    }
+
+    /// Takes note of the contacts of this step and of their sum: force, torque, heat.
+    fn feel(&mut self, _w: &mut World, _contacts: &[(&Touch, &Wrench)], _felt: [f64; op::FELT], _t: &Tick) {}
+
+    /// Whether other ops read or change what it keeps in `memo`.
+    fn shares(&self) -> bool {
+        false
+    }
+
+    /// Whether it depends on the contacts of all grains: each of several ranks finds them all.
+    fn feels(&self) -> bool {
+        false
     }
 }
 
@@ -63,6 +79,14 @@ trait Form: Clone + Send + 'static {
 
     /// Its outline for pictures.
     fn outline(&self) -> Outline;
+
+    /// Options of `fix_modify`.
+    ///
+    /// # Errors
+    /// Words that it does not know.
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        options::<Counted>(args, cx).map(drop)
+    }
 }
 
 /// Data of all walls.
@@ -104,7 +128,7 @@ struct Declared<F> {
 
 impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        plastic::suits(&self.common.material.model, cx)?;
+        plastic::suits(&self.common.material, cx)?;
         let surface = self.form.surface(&self.common, cx)?;
         let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
         Ok(if op.is_plastic() { op::halves(op) } else { vec![Box::new(op)] })
@@ -120,16 +144,22 @@ impl<F: Form> Fix for Declared<F> {
         let key = self.common.key(F::STYLE);
         forget(w, key);
         w.memo.remove(key);
-        let contacts: Key<Contacts> = Key::new(&self.common.id);
-        w.wall_contacts.remove(contacts);
+        for k in 0..w.types.max(1) {
+            let contacts: Key<Contacts> = Key::new(&op::memory_name(&self.common.id, k));
+            w.wall_contacts.remove(contacts);
+            if let Some(springs) = w.facts.get_mut(*WALL_SPRINGS) {
+                springs.lists.remove(contacts.of());
+            }
+            if let Some(all) = w.facts.get_mut(*WALL_TOUCHES) {
+                all.remove(contacts.of());
+            }
+        }
         w.wall_contacts.remove(plastic::key(&self.common.id));
-        if let Some(springs) = w.facts.get_mut(*WALL_SPRINGS) {
-            springs.lists.remove(contacts.of());
-        }
-        w.outlines.remove(contacts.of());
-        if let Some(all) = w.facts.get_mut(*WALL_TOUCHES) {
-            all.remove(contacts.of());
-        }
+        w.outlines.remove(Key::new(&self.common.id));
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.form.modify(args, cx)
     }
 
     fn shape(&self) -> Shape {
@@ -138,8 +168,9 @@ impl<F: Form> Fix for Declared<F> {
     }
 
     fn contact_time(&self, w: &World, deck: Deck) -> Option<f64> {
-        let law = self.common.material.law(w.settings.compat);
-        durations::on_wall(w, &law, self.common.group.bit(), deck)
+        let laws = self.common.material.laws(w).ok()?;
+        let time = |(law, _): &words::Ruled| durations::on_wall(w, law, self.common.group.bit(), deck);
+        laws.iter().filter_map(time).reduce(f64::min)
     }
 }
 

@@ -2,14 +2,15 @@
 
 use super::peace::Peace;
 use super::plastic::Plastic;
+use super::words::Ruled;
 use super::{Common, Surface};
 use perigrain_base::comm::rows;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, length, scale, sub};
 use perigrain_base::par;
 use perigrain_contact::driver::DEEP;
-use perigrain_contact::walls::{Meeting, Spheres, WallSweep};
-use perigrain_contact::{Advance, Granular};
+use perigrain_contact::walls::{Meeting, Spheres, Touch, WallSweep};
+use perigrain_contact::{Advance, Granular, Heat, Wrench};
 use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way, When};
 use perigrain_styles::critical::{ReportedSprings, WALL_SPRINGS, walls_always_report, walls_report};
 use perigrain_styles::ledger::WALL_TOUCHES;
@@ -17,8 +18,8 @@ use perigrain_styles::{Reading, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::field::{
-    self, BOX, F, FACTS, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL, V,
-    WALL_CONTACTS, X,
+    self, BOX, F, FACTS, KIND, LISTS, MASK, MASS, MEMO, OMEGA, RADIUS, REGIONS, SLOTS, TAG, TORQUE, TRAVEL,
+    V, WALL_CONTACTS, X,
 };
 use perigrain_world::{Key, Numbers, Seen, SlotId, World};
 use std::borrow::Cow;
@@ -34,12 +35,10 @@ pub const FELT: usize = 7;
 /// Forces of one wall.
 pub struct WallOp {
     name: String,
-    /// Key of the contact memory.
-    key: Key<Contacts>,
     bit: u32,
-    law: Granular,
     surface: Box<dyn Surface>,
-    sweep: WallSweep,
+    /// Contacts by law; one part for all grains where they have one law.
+    parts: Vec<Part>,
     /// Generation of the rebuild for which the list of particles near the wall was made.
     generation: Option<u64>,
     /// The deal of rows to ranks for which it lists this rank's own particles, if such a list was made in
@@ -59,12 +58,66 @@ pub struct WallOp {
     /// The particle too deep in the wall: ID, depth as a fraction of its radius, step.
     deep: Option<(u32, f64, i64)>,
     warmth: Option<Warmth>,
-    /// Contact memory before a setup that only evaluates forces.
-    kept: Option<Contacts>,
     /// Data for plastic grains.
     plastic: Option<Plastic>,
     /// The period in which no particle can touch the wall.
     peace: Peace,
+}
+
+/// The contacts of one law.
+struct Part {
+    law: Granular,
+    /// Whether each type of grains (from 1) has this law; all have where nothing stands.
+    kinds: Option<Vec<bool>>,
+    /// Key of the contact memory.
+    key: Key<Contacts>,
+    sweep: WallSweep,
+    /// Contact memory before a setup that only evaluates forces.
+    kept: Option<Contacts>,
+}
+
+impl Part {
+    /// Those of a wall.
+    fn all(common: &Common, w: &World) -> Result<Vec<Self>> {
+        let part = |(k, (law, kinds)): (usize, Ruled)| {
+            let key = Key::new(&memory_name(&common.id, k));
+            Self { law, kinds, key, sweep: WallSweep::default(), kept: None }
+        };
+        Ok(common.material.laws(w)?.into_iter().enumerate().map(part).collect())
+    }
+}
+
+impl Part {
+    /// Evaluates the contacts found, and books them; the memory goes back into the world.
+    fn act(&mut self, w: &mut World, t: &Tick, mut memory: Contacts) {
+        let p = &w.particles;
+        // Particles of rigid bodies touch with the mass of their body.
+        let masses = match self.sweep.touching().0 {
+            [] => Cow::Borrowed(&p.mass[..]),
+            _ => w.contact_masses(),
+        };
+        let [v, omega] = t.phase.motion(w);
+        let grains = Spheres { x: &p.x, v, omega, radius: &p.radius, mass: &masses, tag: &p.tag };
+        let step = Advance { dt: t.dt, history: !t.setup };
+        self.sweep.act(&grains, &self.law, &mut memory, step);
+        let asked = walls_report(&w.facts, t.step, t.setup, t.last);
+        let springs = asked.then(|| self.sweep.springs(&grains, &self.law, &memory));
+        let booked = w.facts.has(*WALL_TOUCHES);
+        let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
+        if let Some(list) = springs {
+            let report = ReportedSprings { step: t.step, list };
+            w.facts.get_or_default(*WALL_SPRINGS).lists.insert(self.key.of(), report);
+        }
+        if let Some((all, touches)) = w.facts.get_mut(*WALL_TOUCHES).zip(touches) {
+            all.insert(self.key.of(), touches);
+        }
+        give(w, self.key, self.kept.take().unwrap_or(memory));
+    }
+}
+
+/// Name of the contact memory of part `k` of a wall.
+pub fn memory_name(id: &str, k: usize) -> String {
+    if k == 0 { id.to_string() } else { format!("{id}/{k}") }
 }
 
 /// Data for a wall that conducts heat.
@@ -78,8 +131,18 @@ struct Warmth {
 
 impl Warmth {
     /// For a wall with a temperature.
-    fn new(common: &Common, cx: &mut dyn SealCx) -> Result<Option<Self>> {
-        let Some((wall, _)) = &common.temperature else { return Ok(None) };
+    fn new(common: &Common, conducts: bool, cx: &mut dyn SealCx) -> Result<Option<Self>> {
+        let Some((wall, _)) = &common.temperature else {
+            if !conducts {
+                return Ok(None);
+            }
+            let text = "contacts conduct heat, but the wall has no temperature";
+            let d = Diagnostic::error(Code::INCOMPLETE, common.material.span, text);
+            return Err(d.help("add `temperature T`, or `only …` without `heat` behind `coeff T`").into());
+        };
+        if !conducts {
+            return Ok(None);
+        }
         let wall = cx.param(wall, Stage::PostForce, &When::Always)?;
         let columns = &cx.world().columns;
         let (Some(temperature), Some(flow)) = (columns.property(*TEMPERATURE), columns.property(*HEATFLOW))
@@ -105,15 +168,14 @@ impl WallOp {
         surface: Box<dyn Surface>,
         cx: &mut dyn SealCx,
     ) -> Result<Self> {
-        let warmth = Warmth::new(common, cx)?;
-        let compat = cx.world().settings.compat;
+        let parts = Part::all(common, cx.world())?;
+        let conducts = parts.iter().any(|part| part.law.heat != Heat::None);
+        let warmth = Warmth::new(common, conducts, cx)?;
         Ok(Self {
             name: format!("fix {} {style}", common.id),
-            key: Key::new(&common.id),
             bit: common.group.bit(),
-            law: common.material.law(compat),
             surface,
-            sweep: WallSweep::default(),
+            parts,
             generation: None,
             deal: None,
             was_part: false,
@@ -126,7 +188,6 @@ impl WallOp {
             span: cx.span(),
             deep: None,
             warmth,
-            kept: None,
             plastic: Plastic::of(&common.material.model, &common.id),
             peace: Peace::default(),
         })
@@ -152,9 +213,12 @@ impl WallOp {
         // Half a skin for the wall, and one for the particles: one that has moved half a skin already may
         // move half a skin back, and one whose anchor is known a whole skin.
         let far = 1.5 * s.skin;
-        let Self { surface, sweep, law, bit, .. } = self;
-        let which = Meeting { mask: &w.particles.mask, group: *bit, rows };
-        surface.show(w, &mut |wall| sweep.list(wall, grains, &which, law, far));
+        let Self { surface, parts, bit, .. } = self;
+        for Part { law, kinds, sweep, .. } in parts {
+            let kinds = kinds.as_deref().map(|some| (&w.particles.kind[..], some));
+            let which = Meeting { mask: &w.particles.mask, group: *bit, rows, kinds };
+            surface.show(w, &mut |wall| sweep.list(wall, grains, &which, law, far));
+        }
         (self.generation, self.deal) = (Some(w.rebuild.generation), deal);
         self.was_part |= deal.is_some();
         self.travelled = 0.0;
@@ -165,24 +229,31 @@ impl WallOp {
     }
 
     /// Moves the wall to its current position and takes its contact memory out of the world.
-    fn place(&mut self, w: &mut World, t: &Tick) -> Result<Contacts> {
+    fn place(&mut self, w: &mut World, t: &Tick) -> Result<Vec<Contacts>> {
         self.travelled += self.surface.place(w, t)?;
-        Ok(take(w, self.key))
+        Ok(self.take(w))
+    }
+
+    /// Takes the contact memory of the wall out of the world, part by part.
+    fn take(&self, w: &mut World) -> Vec<Contacts> {
+        self.parts.iter().map(|part| take(w, part.key)).collect()
     }
 
     /// Finds the contacts.
-    fn meet(&mut self, w: &World, t: &Tick, memory: &mut Contacts) {
-        // The setup only evaluates forces; LAMMPS nevertheless shortens the springs of sliding contacts.
-        self.kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+    fn meet(&mut self, w: &World, t: &Tick, memories: &mut [Contacts]) {
         let p = &w.particles;
         // Masses are needed for forces only.
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
-        let Self { surface, sweep, law, .. } = self;
-        match sweep.listed() {
-            0 => sweep.leave(law, memory),
-            _ => surface.show(w, &mut |wall| sweep.meet(wall, &grains, law, memory)),
+        let Self { surface, parts, .. } = self;
+        for (Part { law, sweep, kept, .. }, memory) in parts.iter_mut().zip(memories) {
+            // The setup only evaluates forces; LAMMPS nevertheless shortens the springs of sliding contacts.
+            *kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
+            match sweep.listed() {
+                0 => sweep.leave(law, memory),
+                _ => surface.show(w, &mut |wall| sweep.meet(wall, &grains, law, memory)),
+            }
         }
     }
 
@@ -191,11 +262,15 @@ impl WallOp {
         let Some(plastic) = &self.plastic else { return Ok(()) };
         // Grains expand before they meet the wall.
         plastic.begin(w, t);
-        let mut memory = self.place(w, t)?;
-        self.meet(w, t, &mut memory);
-        give(w, self.key, memory);
-        if let Some(plastic) = &mut self.plastic {
-            plastic.gather(w, t, &self.sweep);
+        let mut memories = self.place(w, t)?;
+        self.meet(w, t, &mut memories);
+        // Plastic grains have one law.
+        let Self { parts, plastic, .. } = self;
+        for (part, memory) in parts.iter().zip(memories) {
+            give(w, part.key, memory);
+            if let Some(plastic) = plastic {
+                plastic.gather(w, t, &part.sweep);
+            }
         }
         Ok(())
     }
@@ -207,7 +282,7 @@ impl WallOp {
             return;
         }
         let p = &w.particles;
-        let deep = self.sweep.contacts().map(|(touch, _)| {
+        let deep = contacts(&self.parts).map(|(touch, _)| {
             let i = touch.grain as usize;
             (p.tag[i], 1.0 - touch.near.distance / p.radius[i])
         });
@@ -224,7 +299,8 @@ impl WallOp {
         let p = &w.particles;
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
-        let lost = self.sweep.conduct(&grains, &self.law, wall, &temperature, &mut flow);
+        let conduct = |part: &mut Part| part.sweep.conduct(&grains, &part.law, wall, &temperature, &mut flow);
+        let lost: f64 = self.parts.iter_mut().map(conduct).sum();
         *w.columns.scalar(warmth.flow, n) = flow;
         -lost
     }
@@ -234,16 +310,17 @@ impl WallOp {
         let (p, skin) = (&w.particles, w.settings.neighbor.skin);
         let grains =
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
-        let (Self { surface, sweep, law, .. }, mut room) = (self, skin);
-        if sweep.listed() > 0 {
-            surface.show(w, &mut |wall| room = sweep.room(wall, &grains, law, skin));
+        let Self { surface, parts, .. } = self;
+        let mut least = skin;
+        for Part { law, sweep, .. } in parts.iter_mut().filter(|part| part.sweep.listed() > 0) {
+            surface.show(w, &mut |wall| least = least.min(sweep.room(wall, &grains, law, skin)));
         }
-        room
+        least
     }
 
     /// For a wall at rest without contacts, determines how long none can occur.
     fn look_ahead(&mut self, w: &World, t: &Tick) {
-        let touched = self.sweep.contacts().next().is_some();
+        let touched = contacts(&self.parts).next().is_some();
         let still = self.surface.stands() && self.local == 0 && self.plastic.is_none();
         // A rank knows contacts of its own particles only.
         if touched || !still || t.setup || !followed(w) || w.is_narrow() {
@@ -257,7 +334,9 @@ impl WallOp {
 
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
-        let local = self.surface.local(w, &self.sweep, t);
+        let touching: Vec<_> = contacts(&self.parts).collect();
+        let local = self.surface.local(w, &touching, t);
+        self.surface.feel(w, &touching, felt, t);
         if w.is_narrow() {
             // Nothing reads sums over the particles of a single rank.
             let out = w.slots.get_mut(self.slot);
@@ -275,7 +354,11 @@ impl WallOp {
             out.cols = cols;
             out.atom.clear();
             out.atom.resize(cols * n, 0.0);
-            for (k, (touch, wrench)) in self.sweep.contacts().enumerate() {
+            let heats = self
+                .parts
+                .iter()
+                .flat_map(|part| (0..part.sweep.touching().0.len()).map(|k| part.sweep.heat(k)));
+            for ((touch, wrench), heat) in contacts(&self.parts).zip(heats) {
                 let i = touch.grain as usize;
                 let point = sub(p.x[i], scale(touch.near.distance, touch.near.normal));
                 let row = &mut out.atom[cols * i..][..cols];
@@ -283,12 +366,17 @@ impl WallOp {
                 row[1..4].copy_from_slice(&wrench.force);
                 row[4..7].copy_from_slice(&point);
                 row[7] = p.radius[i];
-                if let Some(heat) = row.get_mut(COLUMNS) {
-                    *heat = self.sweep.heat(k);
+                if let Some(place) = row.get_mut(COLUMNS) {
+                    *place = heat;
                 }
             }
         }
     }
+}
+
+/// The contacts of the last evaluation with their forces and torques.
+fn contacts(parts: &[Part]) -> impl Iterator<Item = (&Touch, &Wrench)> {
+    parts.iter().flat_map(|part| part.sweep.contacts())
 }
 
 /// Whether particles always stay within half a skin of their positions at the last rebuild.
@@ -401,14 +489,20 @@ impl Op for WallOp {
                 BOX | X | V | OMEGA | RADIUS | MASS | MASK | field::COLUMNS | TAG | REGIONS | LISTS | TRAVEL,
             )
             .add(F | TORQUE)
-            .write(WALL_CONTACTS | FACTS | SLOTS)
-            .keep(MEMO | field::COLUMNS);
+            .write(WALL_CONTACTS | FACTS | SLOTS);
+        let needs = match self.surface.shares() {
+            true => needs.write(MEMO).keep(field::COLUMNS),
+            false => needs.keep(MEMO | field::COLUMNS),
+        };
+        let by_kind = self.surface.shares() || self.parts.iter().any(|part| part.kinds.is_some());
+        let needs = if by_kind { needs.read(KIND) } else { needs };
         About { collective: true, ..About::new(&self.name, Stage::PostForce, needs) }
     }
 
     fn span(&mut self, w: &mut World, t: &Tick) -> Rows {
         let facts = w.facts.past();
         let asked = facts.has(*WALL_TOUCHES) || walls_report(facts, t.step, t.setup, t.last);
+        let asked = asked || self.surface.feels();
         match asked || t.setup || self.plastic.is_some() || self.warmth.is_some() {
             true => Rows::All,
             false => Rows::Own,
@@ -419,40 +513,25 @@ impl Op for WallOp {
         if t.unchanged {
             return Ok(());
         }
-        let mut memory = match self.plastic {
-            Some(_) => take(w, self.key),
+        let mut memories = match self.plastic {
+            Some(_) => self.take(w),
             None => self.place(w, t)?,
         };
         if self.plastic.is_none() {
-            self.meet(w, t, &mut memory);
+            self.meet(w, t, &mut memories);
         }
-        if let Some(plastic) = &mut self.plastic {
-            plastic.press(w, t, &self.sweep, &mut memory);
+        let mut felt = [0.0; 6];
+        for (k, (part, mut memory)) in self.parts.iter_mut().zip(memories).enumerate() {
+            if let Some(plastic) = &mut self.plastic {
+                plastic.press(w, t, &part.sweep, &mut memory);
+            }
+            part.act(w, t, memory);
+            let p = &mut w.particles;
+            let own = part.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
+            // A single part keeps the sign of a zero.
+            felt = if k == 0 { own } else { std::array::from_fn(|d| felt[d] + own[d]) };
         }
-        let p = &w.particles;
-        // Particles of rigid bodies touch with the mass of their body.
-        let masses = match self.sweep.touching().0 {
-            [] => Cow::Borrowed(&p.mass[..]),
-            _ => w.contact_masses(),
-        };
-        let [v, omega] = t.phase.motion(w);
-        let grains = Spheres { x: &p.x, v, omega, radius: &p.radius, mass: &masses, tag: &p.tag };
-        let step = Advance { dt: t.dt, history: !t.setup };
-        self.sweep.act(&grains, &self.law, &mut memory, step);
-        let asked = walls_report(&w.facts, t.step, t.setup, t.last);
-        let springs = asked.then(|| self.sweep.springs(&grains, &self.law, &memory));
-        let booked = w.facts.has(*WALL_TOUCHES);
-        let touches = booked.then(|| self.sweep.touches(&grains, &self.law, &memory));
-        if let Some(list) = springs {
-            let report = ReportedSprings { step: t.step, list };
-            w.facts.get_or_default(*WALL_SPRINGS).lists.insert(self.key.of(), report);
-        }
-        if let Some((all, touches)) = w.facts.get_mut(*WALL_TOUCHES).zip(touches) {
-            all.insert(self.key.of(), touches);
-        }
-        give(w, self.key, self.kept.take().unwrap_or(memory));
-        let p = &mut w.particles;
-        let [fx, fy, fz, tx, ty, tz] = self.sweep.scatter(&mut p.f, &mut p.torque, &p.x, self.center);
+        let [fx, fy, fz, tx, ty, tz] = felt;
         let heat = self.conduct(w);
         self.find_deep(w, t);
         self.publish(w, t, [fx, fy, fz, tx, ty, tz, heat]);
@@ -495,6 +574,6 @@ impl Op for WallOp {
 
     fn bytes(&self, _w: &World) -> u64 {
         // Positions and radii of those near the wall.
-        self.sweep.listed() as u64 * 36
+        self.parts.iter().map(|part| part.sweep.listed() as u64 * 36).sum()
     }
 }

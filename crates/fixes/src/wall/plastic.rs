@@ -20,7 +20,12 @@ const NUMBERS: [&str; 5] = ["E", "nu", "Y", "psi_b", "the restitution"];
 ///
 /// # Errors
 /// Another normal model, or another parameter.
-pub fn suits(model: &Model, cx: &mut dyn SealCx) -> Result<()> {
+pub fn suits(material: &super::words::Material, cx: &mut dyn SealCx) -> Result<()> {
+    let model = &material.model;
+    if material.lent.is_some() {
+        // The laws themselves are refused where they are plastic.
+        return Ok(());
+    }
     let Some(grains) = cx.world().facts.get(*PLASTIC_GRAIN).copied() else { return Ok(()) };
     let Some(wall) = plastic_grain(&model.normal) else {
         let text = format!("the grains are plastic (`mdr`), the wall is `{}`", model.normal.name());

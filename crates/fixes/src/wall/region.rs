@@ -1,13 +1,15 @@
 //! fix wall/gran/region: the surface of a region as a wall, at rest or moving with it.
 
+use super::servo::{self, Servo, Steered};
 use super::words::{self, Material, Rest};
-use super::{Common, Declared, Form, Surface, needs_spheres};
+use super::{Common, Declared, Form, Surface, needs_spheres, op};
 use crate::{Fix, FixStyle, RegionId};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
-use perigrain_contact::walls::{Near, Wall};
+use perigrain_contact::Wrench;
+use perigrain_contact::walls::{Near, Touch, Wall};
 use perigrain_lang::Args;
-use perigrain_plan::Tick;
-use perigrain_styles::words::{At, Syntax, Words, read};
+use perigrain_plan::{Stage, Tick};
+use perigrain_styles::words::{At, Form as Behind, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{Look, Shape};
 use perigrain_world::{Key, Numbers, Outline, Region, World};
@@ -22,7 +24,7 @@ impl Style for WallGranRegion {
 
     fn doc(&self) -> Doc {
         Doc {
-            syntax: Syntax::Behind(Line::GRAMMAR),
+            syntax: Syntax::Forms(const { &[Behind::behind(Line::GRAMMAR), servo::MODIFIED] }),
             summary: "The surface of a region as a wall on which grains lean, at rest or moving.",
             text: "As `fix wall/gran`, with the surface of a region of any shape. Grains inside feel every face they \
                    touch, grains outside (`side out`) the nearest point; a region with `open` faces is a shell that is \
@@ -35,7 +37,9 @@ impl Style for WallGranRegion {
                    rounded: avoid them.\n\n\
                    A region that follows variables moves the wall, and its surface has the velocity of that motion (the \
                    change since the step before, zero in the first). `region ID delete` and a new `region ID` of the \
-                   same name between runs change the wall.\n\n\
+                   same name between runs change the wall. `servo` moves \
+                   the wall, not the region, along its `axis` so that it presses on grains with a wanted force, as \
+                   described for `fix surface`; not in LAMMPS.\n\n\
                    LAMMPS takes cones for hollow from outside, open cylinders for flat from outside, feels nothing of a \
                    union's outside, misses contacts beside the ends of an ellipsoid's axes, takes moving parts of \
                    unions and intersections for resting ones, gives a turning wall a speed in proportion to the length \
@@ -54,6 +58,8 @@ struct Line {
     force: Material,
     #[word(name = "wall")]
     wall: Surround,
+    #[word(keyword, once, placed)]
+    servo: Option<At<servo::Line>>,
     #[word(flatten)]
     rest: Rest,
 }
@@ -73,12 +79,17 @@ fn force(args: &mut Args, cx: &BuildCx) -> Result<Material> {
 impl FixStyle for WallGranRegion {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "wall/gran/region")?;
-        let Line { force, wall: Surround::Region(wall), rest } = read(args, cx)?;
+        let Line { force, wall: Surround::Region(wall), servo, rest } = read(args, cx)?;
         let (span, RegionId(region)) = (wall.span, wall.value);
         let known = cx.world.regions.find(&region).and_then(|key| cx.world.regions.get(key));
         let turn = known.and_then(|region| region.motion.as_ref()?.turn.as_ref());
         let common = rest.common(force, turn.map_or([0.0; 3], |turn| turn.point), cx)?;
-        Ok(Box::new(Declared { common, form: Shaped { region, span } }))
+        let servo = servo.map(|at| at.value.servo(at.span)?.shifting(at.span)).transpose()?;
+        if servo.is_some() && known.is_some_and(Region::follows) {
+            let text = "a servo moves this wall: the region follows no variable";
+            return fail(Code::CONFLICT, span, text);
+        }
+        Ok(Box::new(Declared { common, form: Shaped { region, span, servo } }))
     }
 }
 
@@ -87,6 +98,7 @@ impl FixStyle for WallGranRegion {
 struct Shaped {
     region: String,
     span: Span,
+    servo: Option<Servo>,
 }
 
 impl Form for Shaped {
@@ -94,7 +106,15 @@ impl Form for Shaped {
 
     fn declare(&self, w: &mut World, key: Numbers) {
         // No step and no pose: the wall has no velocity in its first step.
+        super::forget(w, key);
         w.memo.insert(key, vec![]);
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        match &mut self.servo {
+            Some(servo) => servo.modify(args, cx),
+            None => crate::options::<crate::Counted>(args, cx).map(drop),
+        }
     }
 
     fn outline(&self) -> Outline {
@@ -117,7 +137,12 @@ impl Form for Shaped {
         let before = region.follows().then(|| region.clone());
         let span = self.span;
         let radius = w.particles.radius.iter().copied().fold(0.0, f64::max);
-        Ok(Box::new(Running { name, span, key: fix.key(Self::STYLE), before, elapsed: None, radius }))
+        let key = fix.key(Self::STYLE);
+        let stage = if fix.is_plastic() { Stage::PreForce } else { Stage::PostForce };
+        let servo = self.servo.as_ref().map(|servo| servo.seal(key, stage, cx)).transpose()?;
+        let steered = servo.map(|servo| Steered::new(servo, cx.world()));
+        let outline = Key::new(&fix.id);
+        Ok(Box::new(Running { name, span, key, outline, before, elapsed: None, radius, steered }))
     }
 }
 
@@ -132,10 +157,15 @@ struct Running {
     elapsed: Option<f64>,
     /// The largest radius at the beginning of the run.
     radius: f64,
+    outline: Key<Outline>,
+    steered: Option<Steered>,
 }
 
 impl Surface for Running {
     fn place(&mut self, w: &mut World, t: &Tick) -> Result<f64> {
+        if let Some(steered) = &mut self.steered {
+            return steered.advance(w, t, self.outline);
+        }
         let Some(region) = w.regions.get(self.name) else {
             return fail(Code::UNKNOWN_REGION, self.span, format!("region `{}` is gone", self.name));
         };
@@ -166,11 +196,25 @@ impl Surface for Running {
     }
 
     fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
-        see(&Faces {
+        let faces = Faces {
             // Contact points were just found, so that the region exists.
             region: w.regions.get(self.name),
             look: Look { before: self.before.as_ref().zip(self.elapsed), lammps: w.settings.lammps() },
-        });
+        };
+        match &self.steered {
+            Some(steered) => see(&steered.shifted(&faces)),
+            None => see(&faces),
+        }
+    }
+
+    fn feel(&mut self, w: &mut World, _: &[(&Touch, &Wrench)], felt: [f64; op::FELT], _t: &Tick) {
+        if let Some(steered) = &self.steered {
+            steered.feel(w, felt);
+        }
+    }
+
+    fn feels(&self) -> bool {
+        self.steered.is_some()
     }
 }
 

@@ -1,17 +1,18 @@
 //! Words that all walls share: the force style with its parameters, and keywords.
 
 use super::Common;
+pub use super::lent::Lent;
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
 use perigrain_contact::{Arm, Damping, Drag, Granular, Heat, Model, normal};
 use perigrain_lang::{Args, Param, Word};
 use perigrain_pairs::contact::{classic, words};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{Alternative, At, Kind, Part, Placeholder, Value, Words};
-use perigrain_world::Compat;
+use perigrain_styles::words::{Alternative, At, Kind, Part, Placeholder, Value, Words, inner};
+use perigrain_world::{Compat, World};
 
 /// Force styles of walls.
-const STYLES: [&str; 4] = ["granular", "hooke", "hooke/history", "hertz/history"];
+const STYLES: [&str; 5] = ["coeff", "granular", "hooke", "hooke/history", "hertz/history"];
 
 /// The words of a classic force.
 const CLASSIC: &[Part] = &[
@@ -34,6 +35,11 @@ pub const FORCE: Kind = Kind::Choice(&[
         "granular",
         "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
         &[Part::bare("MODELS", Kind::Words(words::Models::GRAMMAR))],
+    ),
+    style(
+        "coeff",
+        "The laws of `pair_coeff` between each type of grains and type T, in `pair_style granular`; arms of friction are R − δ/2.",
+        &[Part::All(Lent::GRAMMAR)],
     ),
     style("hooke", "The force of `pair_style gran/hooke`.", CLASSIC),
     style("hooke/history", "The force of `pair_style gran/hooke/history`.", CLASSIC),
@@ -85,12 +91,32 @@ impl Value for Poisson {
 }
 
 impl Rest {
+    /// With the temperature of the surfaces that the wall consists of.
+    ///
+    /// # Errors
+    /// Another temperature in the line.
+    pub fn with_temperature(mut self, own: Option<Param>, span: Span) -> Result<Self> {
+        match (&self.temperature, own) {
+            (Some(at), Some(_)) => {
+                return fail(Code::CONFLICT, at.span, "its surfaces have a temperature by their own lines");
+            }
+            (None, Some(value)) => self.temperature = Some(At { value, span, unknown: false }),
+            (_, None) => {}
+        }
+        Ok(self)
+    }
+
     /// The data of a wall with this force, whose torque is taken about `center` unless the line says another point.
     ///
     /// # Errors
     /// A material that the force cannot have, and heat without a temperature, or the reverse.
     pub fn common(self, material: Material, center: [f64; 3], cx: &BuildCx) -> Result<Common> {
         let own = match self.material {
+            Some(At { span, .. }) if material.lent.is_some() => {
+                let text = "a wall has constants of its own or those of a type, not both";
+                let d = Diagnostic::error(Code::CONFLICT, span, text);
+                return Err(d.help("give them to the type: `pair_coeff I T …`").into());
+            }
             Some(At { value: (Young(young), Poisson(poisson)), span, .. }) => {
                 Some(own_material(span, [young, poisson], &material.model)?)
             }
@@ -107,20 +133,35 @@ impl Rest {
     }
 }
 
+/// A law, and whether each type (from 1) has it.
+pub type Ruled = (Granular, Option<Vec<bool>>);
+
 /// Materials of a wall and of the grains on it.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Material {
     /// Contact model.
     pub model: Model,
     /// The wall's own material, if given by `material`.
     pub own: Option<Model>,
+    /// Whose laws it has in place of the model's, after `coeff`.
+    pub lent: Option<Lent>,
     /// Span of the model.
     pub span: Span,
 }
 
 impl Material {
-    /// The law of the wall's contacts.
-    pub fn law(&self, compat: Compat) -> Granular {
+    /// The laws of the wall's contacts, each with the types of grains (from 1) that have it; no types where all have it.
+    ///
+    /// # Errors
+    /// Coefficients that are missing.
+    pub fn laws(&self, w: &World) -> Result<Vec<Ruled>> {
+        match &self.lent {
+            Some(lent) => lent.laws(w),
+            None => Ok(vec![(self.law(w.settings.compat), None)]),
+        }
+    }
+
+    fn law(&self, compat: Compat) -> Granular {
         match &self.own {
             None => self.model.law(compat),
             Some(wall) => self.model.mixed(wall, compat).unwrap_or_else(|_| self.model.law(compat)),
@@ -135,6 +176,9 @@ impl Material {
 pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
     let word = args.expect("the force style")?;
     let span = word.span;
+    if word.text == "coeff" {
+        return Ok(Material { model: Model::none(), own: None, lent: Some(inner(args, cx)?), span });
+    }
     let classic = |hertz: bool, history: bool, args: &mut Args| {
         let numbers = classic::numbers(args, hertz, cx)?;
         let mut model = Model::classic(hertz, history, &numbers);
@@ -155,7 +199,7 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
         }
     };
     // As in LAMMPS, friction acts on a grain at its full radius, whatever the overlap.
-    Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, span })
+    Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, lent: None, span })
 }
 
 /// The error for a word that is not a force style of walls: a normal model lacks `granular` before it; a word
@@ -191,6 +235,9 @@ fn granular(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Model> {
         "`curvature` is for contacts of particles with each other"
     } else if c.model.arm == Arm::Point {
         "`arms` is for contacts of particles with each other"
+    } else if let Some((_, span)) = c.other {
+        let d = Diagnostic::error(Code::CONFLICT, span, "`material` of a wall stands behind the wall");
+        return Err(d.help("write `fix … wall/gran granular … zplane 0 NULL material E nu`").into());
     } else if c.cutoff.is_some() {
         "`cutoff` is for contacts of particles with each other"
     } else {
@@ -201,11 +248,15 @@ fn granular(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Model> {
 
 /// Refuses heat without a wall temperature, and the reverse.
 fn check_heat(common: &Common) -> Result<()> {
+    if common.material.lent.is_some() {
+        // What coefficients conduct is seen when a run is sealed.
+        return Ok(());
+    }
     let conducts = common.material.model.heat != Heat::None;
     let (span, text, help) = match &common.temperature {
         Some((_, span)) if !conducts => {
             let text = "a wall has a temperature, but its contacts conduct no heat";
-            (*span, text, "add `heat area H` or `heat radius K` to the model of the wall")
+            (*span, text, "add `heat area H`, `heat radius K` or `heat contact K` to the model of the wall")
         }
         None if conducts => {
             let text = "contacts conduct heat, but the wall has no temperature";

@@ -63,7 +63,7 @@ fn smallest(
 /// The duration of an undamped impact: π √(m̄/k) for F = k δ, 2.943 δ/v for F = k δ^1.5; c δ/v for F = k δⁿ with
 /// δ = ((n+1) m̄ v²/(2 k))^(1/(n+1)).
 fn duration(law: &Granular, units: f64, mass: f64, [radius, curvature]: [f64; 2], speed: f64) -> Option<f64> {
-    let [k, n] = law.normal.power_law(curvature)?;
+    let [k, n] = law.normal.power_law(curvature, mass)?;
     let k = k * units;
     if n == 1.0 {
         return Some(PI * (mass / k).sqrt());

@@ -14,6 +14,8 @@ use perigrain_contact::driver::{Average, Curvature};
 pub struct Coeff {
     /// The models.
     pub model: Model,
+    /// The same with the material of the second type, if that is another one, and the place of its words.
+    pub other: Option<(Model, Span)>,
     /// Sharing among simultaneous contacts.
     pub average: Average,
     /// Effective radius.

@@ -2,11 +2,14 @@
 
 use perigrain_base::diag::{Code, Diagnostic, Diagnostics, Result, Span, nearest};
 use perigrain_contact::normal::{Bound, MOST, Number, STYLES, Style};
-use perigrain_contact::{Damping, Friction, Heat, Normal, Rolling, Sds, Tangential, Twisting};
+use perigrain_contact::{
+    Area, Cdt, Cohesion, Damping, Drag, Epsd, Epsd2, Friction, Grip, Heat, Normal, Pull, Rolling, Sds, Slip,
+    Tangential, Twisting,
+};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
 use perigrain_styles::words::{
-    Alternative, Grammar, Kind, NonNegative, Nullable, Part, Placeholder, Value, Words, inner,
+    Alternative, At, Grammar, Kind, NonNegative, Nullable, Part, Placeholder, Value, Words, inner,
 };
 
 /// An entry of a table that is still to be filled in.
@@ -80,21 +83,67 @@ fn number(number: &Number, args: &mut Args) -> Result<f64> {
 /// A tangential model with its numbers.
 pub struct Sliding {
     kind: Friction,
-    /// Nothing for `NULL`, which stands at the place beside it.
-    stiffness: Option<f64>,
+    stiffness: Stiffness,
+    /// The place of the stiffness.
     at: Span,
     rubbing: Rubbing,
+    /// The place of `slip`.
+    slip: Span,
 }
 
 /// Numbers of all tangential models.
 #[derive(Words)]
 struct Rubbing {
-    /// The tangential damping x_gamma.
-    #[word(non_negative)]
-    x_gamma: f64,
+    /// The tangential damping x_gamma; `NULL` stands for √(k_t/S_n), S_n = dF_n/dδ.
+    #[word(what = "the tangential damping x_gamma (or NULL)")]
+    x_gamma: At<Nullable<NonNegative>>,
     /// The coefficient of friction mu.
     #[word(non_negative)]
     mu: f64,
+    #[word(keyword, name = "whole|spring", like = Slips, default = Slip::Whole)]
+    slip: Slip,
+}
+
+/// What slides at the limit of friction.
+#[derive(Words)]
+#[word(what = "value of slip", of = Slip)]
+enum Slips {
+    /// Spring and dashpot together reach the limit.
+    Whole,
+    /// The spring alone reaches the limit, as in LIGGGHTS; no dashpot acts in a step in which it slides.
+    Spring,
+}
+
+/// A tangential stiffness as it is written.
+#[derive(Clone, Copy)]
+enum Stiffness {
+    /// `NULL`.
+    Null,
+    /// k_t.
+    Is(f64),
+    /// `ratio r`: k_t = r F_n/δ.
+    Ratio(f64),
+}
+
+impl Value for Stiffness {
+    const KIND: Kind = Kind::Or(
+        &Kind::Choice(&[Alternative {
+            word: "ratio",
+            about: "k_t is r times the normal stiffness F_n/δ.",
+            parts: &[Part::Word(Placeholder { name: "r", kind: Kind::Number, about: "", unit: "" })],
+        }]),
+        &Kind::OrNull(&Kind::Number),
+    );
+
+    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
+        if args.eat("ratio") {
+            return args
+                .non_negative("the ratio of the tangential stiffness to the normal one")
+                .map(Self::Ratio);
+        }
+        let Nullable(kt) = Nullable::<NonNegative>::value(what, args, cx)?;
+        Ok(kt.map_or(Self::Null, |kt| Self::Is(kt.0)))
+    }
 }
 
 /// The stiffness of tangential models with a spring.
@@ -102,14 +151,8 @@ struct Rubbing {
 struct Spring {
     /// The tangential stiffness kt; of Mindlin's a pressure [force/length].
     #[word(what = "the tangential stiffness kt")]
-    kt: Nullable<NonNegative>,
+    kt: Stiffness,
 }
-
-/// The same where `NULL` is refused.
-const STIFFNESS: Part = match Spring::GRAMMAR.parts {
-    [Part::Word(kt)] => Part::Word(Placeholder { kind: Kind::Number, ..*kt }),
-    _ => panic!("a spring has one number"),
-};
 
 /// The tangential models, each with its spring.
 const FRICTIONS: [Alternative; Friction::ALL.len()] = {
@@ -120,8 +163,7 @@ const FRICTIONS: [Alternative; Friction::ALL.len()] = {
         let parts: &[Part] = match kind {
             Friction::None => &[],
             Friction::LinearNohistory => &[Part::All(Rubbing::GRAMMAR)],
-            _ if kind.takes_material() => &[Part::All(Spring::GRAMMAR), Part::All(Rubbing::GRAMMAR)],
-            _ => &[STIFFNESS, Part::All(Rubbing::GRAMMAR)],
+            _ => &[Part::All(Spring::GRAMMAR), Part::All(Rubbing::GRAMMAR)],
         };
         all[k] = Alternative { word: kind.name(), about: kind.formula(), parts };
         k += 1;
@@ -139,14 +181,18 @@ impl Value for Sliding {
         };
         let at = args.here();
         let stiffness = match kind {
-            Friction::None | Friction::LinearNohistory => Some(0.0),
-            _ => inner::<Spring>(args, cx)?.kt.0.map(|kt| kt.0),
+            Friction::None | Friction::LinearNohistory => Stiffness::Is(0.0),
+            _ => inner::<Spring>(args, cx)?.kt,
         };
-        let rubbing = match kind {
-            Friction::None => Rubbing { x_gamma: 0.0, mu: 0.0 },
-            _ => inner(args, cx)?,
-        };
-        Ok(Self { kind, stiffness, at, rubbing })
+        if kind == Friction::None {
+            let x_gamma = At { value: Nullable(Some(NonNegative(0.0))), span: at, unknown: false };
+            let rubbing = Rubbing { x_gamma, mu: 0.0, slip: Slip::Whole };
+            return Ok(Self { kind, stiffness, at, rubbing, slip: at });
+        }
+        // `slip` stands behind the numbers.
+        let numbers = 2;
+        let slip = args.peek_at(numbers).map_or(at, |word| word.span);
+        Ok(Self { kind, stiffness, at, rubbing: inner(args, cx)?, slip })
     }
 }
 
@@ -154,26 +200,92 @@ impl Sliding {
     /// The model beside this one along the normal.
     ///
     /// # Errors
-    /// `NULL` in the place of a stiffness, unless the normal model has a material and the spring is Mindlin's.
+    /// `NULL` or `ratio` in the place of a number that the normal model does not provide; `slip spring` where there is no such
+    /// spring.
     pub fn tangential(&self, normal: &Normal) -> Result<Tangential> {
-        let kind = self.kind;
-        let wrong = if self.stiffness.is_some() {
-            None
-        } else if !kind.takes_material() {
-            let help = "write the stiffness kt; mindlin, mindlin/force and mindlin_rescale take it from the material";
-            Some((format!("`tangential {}` needs a stiffness kt, not `NULL`", kind.name()), help))
-        } else if normal.material().is_none() {
-            let text = format!("`NULL` needs a material, which {} does not have", normal.name());
-            Some((text, "write the stiffness kt, or use hertz/material"))
-        } else {
-            None
-        };
-        match wrong {
-            Some((text, help)) => Err(Diagnostic::error(Code::CONFLICT, self.at, text).help(help).into()),
-            None => Ok(Tangential::new(kind, self.stiffness, self.rubbing.x_gamma, self.rubbing.mu)),
+        let wrong = self.wrong_stiffness(normal).or(self.wrong_drag(normal)).or(self.wrong_slip());
+        if let Some((at, text, help)) = wrong {
+            return Err(Diagnostic::error(Code::CONFLICT, at, text).help(help).into());
         }
+        let Rubbing { x_gamma, mu, slip } = &self.rubbing;
+        let drag = x_gamma.value.0.map_or(Drag::Matched, |x| Drag::Times(x.0));
+        let (stiffness, of_normal) = match self.stiffness {
+            Stiffness::Is(kt) => (Some(kt), false),
+            Stiffness::Ratio(r) => (Some(r), true),
+            Stiffness::Null if self.kind.by_radius() => (None, false),
+            Stiffness::Null => (Some(1.0), true),
+        };
+        Ok(Tangential { drag, of_normal, slip: *slip, ..Tangential::new(self.kind, stiffness, 0.0, *mu) })
+    }
+
+    fn wrong_stiffness(&self, normal: &Normal) -> Option<Wrong> {
+        let (kind, linear) = (self.kind.name(), normal.exponent() == 1.0);
+        let (text, help) = match self.stiffness {
+            Stiffness::Is(_) => return None,
+            Stiffness::Ratio(_) | Stiffness::Null if self.kind == Friction::LinearHistory && linear => {
+                return None;
+            }
+            Stiffness::Ratio(_) => (
+                "`ratio` is the ratio of two constant stiffnesses".to_string(),
+                "use `linear_history` with hooke or hooke/velocity, or write the stiffness kt",
+            ),
+            Stiffness::Null if !self.kind.takes_material() => (
+                format!("`tangential {kind}` needs a stiffness kt, not `NULL`"),
+                "write the stiffness kt; mindlin, mindlin/force and mindlin_rescale take it from the material, \
+                 linear_history from hooke and hooke/velocity",
+            ),
+            Stiffness::Null if normal.material().is_none() => (
+                format!("`NULL` needs a material, which {} does not have", normal.name()),
+                "write the stiffness kt, or use hertz/material",
+            ),
+            Stiffness::Null => return None,
+        };
+        Some((self.at, text, help))
+    }
+
+    /// `x_gamma NULL` needs stiffnesses k_t and dF_n/dδ with a constant ratio.
+    fn wrong_drag(&self, normal: &Normal) -> Option<Wrong> {
+        let (kind, n) = (self.kind, normal.exponent());
+        let (simple, material) = (!normal.pulls(), normal.material().is_some());
+        let known = match self.stiffness {
+            _ if self.rubbing.x_gamma.value.0.is_some() => true,
+            _ if normal.name() == "none" => false,
+            _ if kind == Friction::LinearNohistory => n == 1.0 || (n == 1.5 && material && simple),
+            Stiffness::Ratio(_) => true,
+            Stiffness::Null | Stiffness::Is(_) if kind.by_radius() => n == 1.5 && simple,
+            Stiffness::Null => true,
+            Stiffness::Is(_) => n == 1.0 && !material && simple,
+        };
+        let (normal, kind) = (normal.name(), kind.name());
+        let text = || {
+            format!(
+                "`NULL` for x_gamma needs a constant ratio of k_t to dF_n/dδ: {normal} and {kind} have none"
+            )
+        };
+        let help = "write x_gamma, or use mindlin with hertz or hertz/material, linear_history with hooke or \
+                    hooke/velocity";
+        (!known).then(|| (self.rubbing.x_gamma.span, text(), help))
+    }
+
+    fn wrong_slip(&self) -> Option<Wrong> {
+        let fits = self.rubbing.slip == Slip::Whole || self.kind.slips_by_spring();
+        let text = || {
+            format!(
+                "`slip spring` needs the displacement of a spring, which {} does not remember",
+                self.kind.name()
+            )
+        };
+        (!fits).then(|| (self.slip, text(), "use it with mindlin or linear_history"))
+    }
+
+    /// The place of `slip spring`, if it is asked.
+    pub fn slips_by_spring(&self) -> Option<Span> {
+        (self.rubbing.slip == Slip::Spring).then_some(self.slip)
     }
 }
+
+/// Place, message and help of a refusal.
+type Wrong = (Span, String, &'static str);
 
 /// A damping model.
 pub struct Dampings(Damping);
@@ -236,6 +348,79 @@ pub enum Rollings {
     /// A spring, dashpot and slider for the rolling velocity R̄ (ω_i − ω_j) × n; its force, at most mu times the normal force,
     /// acts only as a torque with arm R̄.
     Sds(Slider),
+    /// A torque of constant size against the relative spin ω: μ k_n δ R̄ ω_t/|ω|, ω_t its part across the normal.
+    Cdt(ConstantTorque),
+    /// A spring of the stiffness k_r = c k_n μ² R̄² against ω_t, at most μ R̄ |F_n|, and a dashpot 2 η √(I_r k_r), which does not act
+    /// while the spring slides (Ai et al. 2011).
+    Epsd(SpringTorque),
+    /// The spring of epsd with k_r = k_t R̄², without a dashpot; k_t is that of the tangential model.
+    Epsd2(ConstantTorque),
+}
+
+/// Words of a torque with a coefficient of friction.
+#[derive(Words)]
+pub struct ConstantTorque {
+    /// The coefficient of rolling friction mu.
+    #[word(non_negative)]
+    mu: f64,
+    /// Counts the spin about the normal too.
+    #[word(flag)]
+    full: bool,
+}
+
+/// Words of a torque with a spring and a dashpot.
+#[derive(Words)]
+pub struct SpringTorque {
+    /// The coefficient of rolling friction mu.
+    #[word(non_negative)]
+    mu: f64,
+    /// The part eta of the critical damping.
+    #[word(non_negative)]
+    eta: f64,
+    /// The factor c of the stiffness, 2.25 without it.
+    c: Option<Factor>,
+    /// Counts the spin about the normal too.
+    #[word(flag)]
+    full: bool,
+}
+
+/// A factor, which begins as a number does.
+struct Factor(f64);
+
+impl Value for Factor {
+    const KIND: Kind = Kind::Number;
+    fn value(what: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.non_negative(what).map(Self)
+    }
+    fn begins(word: &Word) -> bool {
+        word.unknown || word.text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+    }
+}
+
+/// The factor of the stiffness of `epsd` (Ai et al. 2011).
+const USUAL_FACTOR: f64 = 2.25;
+
+/// A model of cohesion.
+#[derive(Words)]
+#[word(style, what = "cohesion model")]
+pub enum Cohesions {
+    /// No cohesion.
+    None,
+    /// A pull k A while the two touch, A the circle in which the spheres intersect.
+    Sjkr(Pulling),
+    /// The same with A = 4 π δ R̄, on walls 2 π δ R.
+    Sjkr2(Pulling),
+}
+
+/// Words of a pull.
+#[derive(Words)]
+pub struct Pulling {
+    /// The energy density k [energy/volume].
+    #[word(what = "the energy density k", non_negative)]
+    k: f64,
+    /// The limit of friction counts from the force with the pull.
+    #[word(flag)]
+    reduce: bool,
 }
 
 /// A model of resistance to twisting.
@@ -274,6 +459,33 @@ pub enum Heating {
     Area(#[word(name = "h", what = "the heat transfer coefficient", non_negative)] f64),
     /// 2 k a (T_j − T_i) flows.
     Radius(#[word(name = "k", what = "the conductivity", non_negative)] f64),
+    /// 2 k √A (T_j − T_i) flows, A the area of contact; unlike types have k = 2 k_i k_j/(k_i + k_j).
+    Contact(Through),
+}
+
+/// Words of the heat through the area of contact.
+#[derive(Words)]
+pub struct Through {
+    /// The conductivity k [energy/(time length temperature)].
+    #[word(what = "the conductivity", non_negative)]
+    k: f64,
+    #[word(keyword, name = "AREA", default = Areas::Overlap, shown = "overlap")]
+    area: Areas,
+    /// The factor of δ in A, for grains softer than their material.
+    #[word(keyword, name = "f", what = "the factor of the overlap", positive)]
+    scaled: Option<f64>,
+}
+
+/// What A is.
+#[derive(Clone, Copy, Words)]
+#[word(what = "area of contact")]
+enum Areas {
+    /// The circle in which the spheres intersect.
+    Overlap,
+    /// π times the square of the larger radius; on walls the circle.
+    Projection,
+    /// A itself.
+    Constant(#[word(name = "A", what = "the area", positive)] f64),
 }
 
 impl From<Slider> for Sds {
@@ -287,6 +499,25 @@ impl From<Rollings> for Rolling {
         match rolling {
             Rollings::None => Self::None,
             Rollings::Sds(slider) => Self::Sds(slider.into()),
+            Rollings::Cdt(ConstantTorque { mu, full }) => Self::Cdt(Cdt { mu, full }),
+            Rollings::Epsd(SpringTorque { mu, eta, c, full }) => {
+                Self::Epsd(Epsd { mu, eta, factor: c.map_or(USUAL_FACTOR, |c| c.0), full })
+            }
+            // The stiffness is that of the pair.
+            Rollings::Epsd2(ConstantTorque { mu, full }) => {
+                Self::Epsd2(Epsd2 { mu, full, grip: Grip::Is(0.0) })
+            }
+        }
+    }
+}
+
+impl From<Cohesions> for Cohesion {
+    fn from(cohesion: Cohesions) -> Self {
+        let pull = |words: Pulling| Pull { density: words.k, reduces: words.reduce };
+        match cohesion {
+            Cohesions::None => Self::None,
+            Cohesions::Sjkr(words) => Self::Sjkr(pull(words)),
+            Cohesions::Sjkr2(words) => Self::Sjkr2(pull(words)),
         }
     }
 }
@@ -307,6 +538,14 @@ impl From<Heating> for Heat {
             Heating::None => Self::None,
             Heating::Area(h) => Self::Area(h),
             Heating::Radius(k) => Self::Radius(k),
+            Heating::Contact(Through { k, area, scaled }) => {
+                let area = match area {
+                    Areas::Overlap => Area::Overlap(scaled.unwrap_or(1.0)),
+                    Areas::Projection => Area::Projection,
+                    Areas::Constant(area) => Area::Constant(area),
+                };
+                Self::Contact { conductivity: k, area }
+            }
         }
     }
 }
@@ -344,6 +583,7 @@ mod tests {
     fn words_are_the_names_of_models() {
         check(|rolling: Rollings| Rolling::from(rolling).name());
         check(|twisting: Twistings| Twisting::from(twisting).name());
+        check(|cohesion: Cohesions| Cohesion::from(cohesion).name());
         check(|heat: Heating| Heat::from(heat).name());
         check(|damping: Dampings| Damping::from(damping).name().split(' ').next().unwrap());
         check(|sliding: Sliding| sliding.kind.name());
@@ -352,6 +592,6 @@ mod tests {
     #[test]
     fn normal_models_have_the_numbers_of_their_table() {
         let shown: Vec<String> = NORMALS.iter().map(Alternative::shown).collect();
-        assert_eq!(shown[..4], ["none", "hooke kn eta", "hertz kn eta", "hertz/material E eta nu"]);
+        assert_eq!(shown[..4], ["none", "hooke kn eta", "hooke/velocity E eta nu V", "hertz kn eta"]);
     }
 }

@@ -1,13 +1,13 @@
 //! The words of `pair_coeff … granular`: models by name, each with its numbers; unknown models are refused by name.
 
 use super::Coeff;
-use super::models::{Dampings, Heating, Law, Rollings, Sliding, Twistings};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use super::models::{Cohesions, Dampings, Heating, Law, Rollings, Sliding, Twistings};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
-use perigrain_contact::{Arm, Damping, Friction, Heat, Model, Rolling, Twisting};
+use perigrain_contact::{Arm, Cohesion, Damping, Friction, Heat, Model, Rolling, Twisting};
 use perigrain_lang::{Args, Word};
 use perigrain_styles::BuildCx;
-use perigrain_styles::words::{Kind, Value, Words, read};
+use perigrain_styles::words::{At, Kind, Value, Words, read};
 
 /// The words of a contact model between particles.
 #[derive(Words)]
@@ -30,6 +30,34 @@ struct Meeting {
     curvature: Curvature,
     #[word(keyword, like = Ends, default = Arm::Middle)]
     arms: Arm,
+    /// Elastic constants of the second type, for 1/E* and 1/G* of two unlike materials; not in LAMMPS.
+    #[word(keyword, name = "E nu", placed)]
+    material: Option<At<(Young, Poisson)>>,
+}
+
+/// Young's modulus of the second body.
+pub struct Young(pub f64);
+
+impl Value for Young {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        args.positive("Young's modulus of the second material").map(Self)
+    }
+}
+
+/// Poisson's ratio of the second body.
+pub struct Poisson(pub f64);
+
+impl Value for Poisson {
+    const KIND: Kind = Kind::Number;
+    fn value(_: &str, args: &mut Args, _: &BuildCx) -> Result<Self> {
+        let at = args.here();
+        let poisson = args.number("Poisson's ratio of the second material")?;
+        if (-1.0..=0.5).contains(&poisson) {
+            return Ok(Self(poisson));
+        }
+        fail(Code::BAD_VALUE, at, format!("Poisson's ratio lies between -1 and 0.5, {poisson} does not"))
+    }
 }
 
 /// The words of a contact model, of a wall too.
@@ -49,10 +77,13 @@ pub struct Models {
     /// The resistance to twisting.
     #[word(keyword, name = "MODEL", like = Twistings, kind = TWISTING, default = Twisting::None, shown = "none")]
     twisting: Twisting,
+    /// The pull of grains that touch.
+    #[word(keyword, name = "MODEL", like = Cohesions, kind = COHESION, default = Cohesion::None, shown = "none")]
+    cohesion: Cohesion,
     /// The heat that flows.
     #[word(keyword, name = "MODEL", like = Heating, kind = HEAT, default = Heat::None, shown = "none")]
     heat: Heat,
-    /// Cuts the force along the normal off at zero.
+    /// Cuts the force along the normal off at zero, before cohesion.
     #[word(flag, placed)]
     limit_damping: Option<Span>,
     /// Springs turn with the normal of the middle of the step.
@@ -62,6 +93,7 @@ pub struct Models {
 
 const ROLLING: Kind = Kind::Models(Rollings::KIND.choices());
 const TWISTING: Kind = Kind::Models(Twistings::KIND.choices());
+const COHESION: Kind = Kind::Models(Cohesions::KIND.choices());
 const HEAT: Kind = Kind::Models(Heating::KIND.choices());
 
 /// By what the force of each contact is divided.
@@ -104,7 +136,7 @@ enum Ends {
 pub fn coeff(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Coeff> {
     let mut own = args.until(|word| ends.contains(&word));
     let Line { models, meeting } = read(&mut own, cx)?;
-    let Meeting { cutoff, average, curvature, arms } = meeting;
+    let Meeting { cutoff, average, curvature, arms, material } = meeting;
     let Law { model: normal, word: first } = models.normal;
     let Some(sliding) = models.tangential else {
         return Err(Diagnostic::error(
@@ -118,18 +150,79 @@ pub fn coeff(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Coeff> {
     let model = Model {
         rolling: models.rolling,
         twisting: models.twisting,
+        cohesion: models.cohesion,
         heat: models.heat,
         limit_damping: models.limit_damping.is_some(),
         arm: arms,
         synchronized: models.synchronized_verlet.is_some(),
         ..Model::new(normal, models.damping, sliding.tangential(&normal)?)
     };
-    let c = Coeff { model, average, curvature, cutoff, span: first.span };
+    let other = match material {
+        Some(At { value: (Young(young), Poisson(poisson)), span, .. }) => {
+            Some((second(span, [young, poisson], &model)?, span))
+        }
+        None => None,
+    };
+    let c = Coeff { model, other, average, curvature, cutoff, span: first.span };
     check_synchrony(&c.model, models.synchronized_verlet)?;
+    check_slip(&c.model, &sliding)?;
+    check_turning(&first, &c.model)?;
     check_mdr(&first, &c)?;
     check_restitution(&first, &c.model)?;
     check_cohesion(&first, &c.model, models.limit_damping)?;
     Ok(c)
+}
+
+/// `material E nu`: the elastic constants of the second body; the other parameters are those of the model.
+fn second(span: Span, [young, poisson]: [f64; 2], model: &Model) -> Result<Model> {
+    let Some(normal) = model.normal.with_material(young, poisson) else {
+        let text = format!("`material` needs a normal model with a material, not {}", model.normal.name());
+        let d = Diagnostic::error(Code::CONFLICT, span, text);
+        return Err(d.help("use `hertz/material E eta nu …` or `hooke/velocity E eta nu V …`").into());
+    };
+    Ok(Model { normal, ..*model })
+}
+
+/// `slip spring` has the spring and the arms of grains that touch, at the end of the step.
+fn check_slip(model: &Model, sliding: &Sliding) -> Result<()> {
+    let Some(span) = sliding.slips_by_spring() else { return Ok(()) };
+    let text = if model.synchronized {
+        "`slip spring` projects springs onto the plane at the end of the step, `synchronized_verlet` turns them"
+    } else if model.normal.in_grains() {
+        "`slip spring` does not go with the normal model mdr"
+    } else {
+        return Ok(());
+    };
+    Err(Diagnostic::error(Code::CONFLICT, span, text).help("leave one of the two out").into())
+}
+
+/// Torques and cohesion that need two spheres, or a stiffness that the other models do not have.
+fn check_turning(normal: &Word, model: &Model) -> Result<()> {
+    let conflict = |text: String, help: &str| {
+        Err(Diagnostic::error(Code::CONFLICT, normal.span, text).help(help.to_string()).into())
+    };
+    let torque = model.rolling.is_torque();
+    if (torque || model.cohesion != Cohesion::None) && (model.arm == Arm::Point || model.normal.in_grains()) {
+        let name = if torque { model.rolling.name() } else { model.cohesion.name() };
+        let other = if model.normal.in_grains() { "the normal model mdr" } else { "`arms point`" };
+        return conflict(format!("{name} does not go with {other}"), "leave one of the two out");
+    }
+    let own = matches!(model.tangential.kind, Friction::None | Friction::LinearNohistory);
+    if matches!(model.rolling, Rolling::Epsd2(_)) && own {
+        let known = model.normal.exponent() == 1.0 || model.normal.material().is_some();
+        if !known {
+            let text = format!(
+                "`rolling epsd2` takes k_t from a spring or a material, {} has none",
+                model.normal.name()
+            );
+            return conflict(text, "use a tangential model with a spring, hertz/material, or `rolling epsd`");
+        }
+    }
+    if model.tangential.of_normal && model.twisting == Twisting::Marshall {
+        let text = "`twisting marshall` needs k_t as a number".to_string();
+        return conflict(text, "write the stiffness kt, or use `twisting sds`");
+    }
+    Ok(())
 }
 
 /// `mdr` goes with its own damping or none, that damping with nothing else.

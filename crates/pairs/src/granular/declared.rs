@@ -11,14 +11,14 @@ use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::driver::{Average, Curvature, Rule, Rules};
 use perigrain_contact::mdr::{Material, State};
 use perigrain_contact::normal::{plastic, plastic_grain};
-use perigrain_contact::{Damping, Model, Twisting};
+use perigrain_contact::{Cohesion, Damping, Model, Twisting};
 use perigrain_lang::Args;
 use perigrain_neigh::list::{Reach, Wanted};
 use perigrain_plan::Op;
 use perigrain_styles::probe::Probe;
 use perigrain_styles::{BuildCx, SealCx};
 use perigrain_world::columns::{HEATFLOW, TEMPERATURE};
-use perigrain_world::{Compat, World};
+use perigrain_world::{Compat, Constant, World};
 use std::collections::BTreeMap;
 
 /// Whether a model is one of those that LAMMPS does wrong.
@@ -39,6 +39,9 @@ const FAULTS: [(HasFault, &str, bool); 4] = [
         false,
     ),
 ];
+
+/// The laws of `pair_style granular` by pair of types, for walls that lend them.
+pub static GRANULAR_RULES: Constant<Rules> = Constant::new("granular/rules");
 
 /// A granular pair style with its coefficients.
 #[derive(Clone)]
@@ -69,7 +72,7 @@ pub fn classic(
     let numbers = crate::contact::classic::line(args, hertz, cx)?;
     let model = Model::classic(hertz, history, &numbers);
     let (average, curvature, cutoff) = (Average::None, Curvature::Both, None);
-    let all = Some(Coeff { model, average, curvature, cutoff, span });
+    let all = Some(Coeff { model, other: None, average, curvature, cutoff, span });
     Ok(Box::new(Declared { all, ..Declared::new(name, None) }))
 }
 
@@ -94,7 +97,11 @@ impl Declared {
     fn rule(&self, i: u16, j: u16, compat: Compat) -> Result<Option<(Rule, Reach)>> {
         let reach = |c: Option<f64>| c.or(self.cutoff).map_or(Reach::Touch, Reach::Fixed);
         if let Some(c) = self.given.get(&(i, j)) {
-            let rule = Rule { law: c.model.law(compat), average: c.average, curvature: c.curvature };
+            let law = match &c.other {
+                Some((other, _)) => c.model.beside(other, compat),
+                None => c.model.law(compat),
+            };
+            let rule = Rule { law, average: c.average, curvature: c.curvature };
             return Ok(Some((rule, reach(c.cutoff))));
         }
         let (Some(a), Some(b)) = (self.given.get(&(i, i)), self.given.get(&(j, j))) else { return Ok(None) };
@@ -143,6 +150,18 @@ impl Declared {
         .into())
     }
 
+    /// Lends the laws of `granular` to walls, which are sealed after pair styles.
+    fn lend(&self, w: &mut World, rules: &Rules) {
+        if self.name != "granular" {
+            return;
+        }
+        let types = w.types;
+        let all = w.facts.remove(*GRANULAR_RULES).filter(|all| all.types() == types);
+        let mut all = all.unwrap_or_else(|| Rules::new(types));
+        rules.pairs().for_each(|([i, j], rule)| all.set(i, j, *rule));
+        w.facts.insert(*GRANULAR_RULES, all);
+    }
+
     fn acts_on(&self, i: u16, j: u16) -> bool {
         self.only.as_ref().is_none_or(|pairs| pairs.contains(&(i, j)))
     }
@@ -167,8 +186,8 @@ impl Declared {
 
 impl Pair for Declared {
     fn facts(&self) -> Facts {
-        let elastic_grains =
-            self.given.values().all(|c| !c.model.normal.pulls() && !c.model.normal.in_grains());
+        let elastic = |m: &Model| !m.normal.pulls() && !m.normal.in_grains() && m.cohesion == Cohesion::None;
+        let elastic_grains = self.given.values().all(|c| elastic(&c.model));
         Facts { name: self.name, needs: &["diameter", "density"], elastic_grains, ..Facts::default() }
     }
 
@@ -177,11 +196,26 @@ impl Pair for Declared {
             Some(all) => all,
             None => words::coeff(args, cx, &[])?,
         };
+        if let (Some((_, span)), Some((i, _))) = (coeff.other, pairs.iter().find(|(i, j)| i == j)) {
+            let text = format!(
+                "`material` is that of the second of two types, and this line is for type {i} itself too"
+            );
+            return Err(Diagnostic::error(Code::CONFLICT, span, text)
+                .help("name two types, as in `pair_coeff 1 2 …`, or leave the word out")
+                .into());
+        }
         self.given.extend(pairs.iter().map(|&p| (p, coeff)));
         Ok(())
     }
 
+    fn material(&self, kind: u16) -> Option<(f64, f64)> {
+        self.given.get(&(kind, kind))?.model.normal.material()
+    }
+
     fn declare(&self, w: &mut World) {
+        if let Ok((rules, _)) = self.tables(w.types, w.settings.compat) {
+            self.lend(w, &rules);
+        }
         if self.given.values().any(|c| c.model.normal.in_grains()) {
             State::declare(w);
         }
@@ -215,6 +249,7 @@ impl Pair for Declared {
                 cx.world().facts.insert(*PLASTIC_GRAIN, grain);
             }
         }
+        self.lend(cx.world(), &rules);
         let types = cx.world().types;
         Ok(vec![(0, Box::new(Force::new(self.name, rules, wanted, types, press)))])
     }

@@ -92,7 +92,7 @@ fn unlike_models_need_a_line_of_their_own() {
     d.given.insert((2, 2), read(&format!("hertz 4e6 0.5 {tail}")).unwrap());
     let (rule, reach) = d.rule(1, 2, Compat::Perigrain).unwrap().unwrap();
     // √(1e6 · 4e6).
-    assert_eq!((rule.law.normal.power_law(1.0), reach), (Some([2e6, 1.5]), Reach::Touch));
+    assert_eq!((rule.law.normal.power_law(1.0, 1.0), reach), (Some([2e6, 1.5]), Reach::Touch));
     d.restrict(&[(1, 2)]);
     let (rules, _) = d.tables(2, Compat::Perigrain).unwrap();
     assert!(rules.get(1, 1).is_none() && rules.get(2, 1).is_some());

@@ -1,0 +1,125 @@
+//! Frequent combinations of models, for which the loop over contacts is compiled on its own.
+
+use super::{Arm, Cohesion, Damping, Force, Friction, Granular, Loop, Rolling, Slip, Spring, Sync, Twisting};
+use crate::cohesion::Pull;
+use crate::slider::Look;
+use crate::turning::Cdt;
+
+impl Granular {
+    /// Runs a loop with this law, with a separate call for each frequent combination of models, so that the
+    /// compiler specializes the loop for it.
+    #[inline(always)]
+    pub(crate) fn within(&self, work: impl Loop) {
+        use {Damping::*, Friction::*};
+        if self.spring.slip == Slip::Spring {
+            return self.within_slips_by_spring(work);
+        }
+        let whole = |kind| (kind, Slip::Whole);
+        let (normal, spring) = (hertz, whole(MindlinClassic));
+        if let Some(law) = self.known(normal, Viscoelastic, spring, Arm::Radius, (free, loose)) {
+            return work.run(&law);
+        }
+        let spring = whole(LinearHistoryClassic);
+        if let Some(law) = self.known(hooke, MassVelocity, spring, Arm::Radius, (free, loose)) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(hertz, Tsuji, whole(Mindlin), Arm::Middle, (free, loose)) {
+            return work.run(&law);
+        }
+        work.run(self);
+    }
+
+    /// The same for `slip spring`.
+    #[inline(always)]
+    fn within_slips_by_spring(&self, work: impl Loop) {
+        use Damping::CoeffRestitution;
+        let (spring, arm) = ((Friction::Mindlin, Slip::Spring), Arm::Middle);
+        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, loose)) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, loose)) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, sjkr)) {
+            return work.run(&law);
+        }
+        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, sjkr)) {
+            return work.run(&law);
+        }
+        work.run(self);
+    }
+
+    /// This law, if it has the given models and no resistance to twisting, in a form in which the compiler
+    /// knows the models.
+    #[inline(always)]
+    fn known(
+        &self,
+        normal: impl Fn(&Force) -> Option<Force>,
+        damping: Damping,
+        (kind, slip): (Friction, Slip),
+        arm: Arm,
+        (rolling, cohesion): (impl Fn(&Rolling) -> Option<Rolling>, impl Fn(&Cohesion) -> Option<Cohesion>),
+    ) -> Option<Self> {
+        let normal = normal(&self.normal)?;
+        let (rolling, cohesion) = (rolling(&self.rolling)?, cohesion(&self.cohesion)?);
+        let (look, sync, of_normal) = (Look::First, Sync::Off, false);
+        let s = &self.spring;
+        let same = self.damping == damping
+            && (s.kind, s.slip, s.look, s.sync, s.of_normal) == (kind, slip, look, sync, of_normal)
+            && self.arm == arm
+            && self.twisting == Twisting::None
+            && !self.is_on_wall;
+        same.then_some(Self {
+            normal,
+            damping,
+            spring: Spring { kind, slip, look, sync, of_normal, ..self.spring },
+            rolling,
+            twisting: Twisting::None,
+            cohesion,
+            arm,
+            is_on_wall: false,
+            by_radius: kind.by_radius() || normal.by_radius(),
+            ..*self
+        })
+    }
+}
+
+/// The force, if it is Hertz'.
+#[inline(always)]
+fn hertz(force: &Force) -> Option<Force> {
+    let Force::Hertz(law) = force else { return None };
+    Some(Force::Hertz(*law))
+}
+
+/// The force, if it is Hooke's.
+#[inline(always)]
+fn hooke(force: &Force) -> Option<Force> {
+    let Force::Hooke(law) = force else { return None };
+    Some(Force::Hooke(*law))
+}
+
+/// No resistance to rolling.
+#[inline(always)]
+fn free(rolling: &Rolling) -> Option<Rolling> {
+    matches!(rolling, Rolling::None).then_some(Rolling::None)
+}
+
+/// The resistance to rolling, if it is `cdt`.
+#[inline(always)]
+fn cdt(rolling: &Rolling) -> Option<Rolling> {
+    let Rolling::Cdt(Cdt { mu, full: false }) = *rolling else { return None };
+    Some(Rolling::Cdt(Cdt { mu, full: false }))
+}
+
+/// No cohesion.
+#[inline(always)]
+fn loose(cohesion: &Cohesion) -> Option<Cohesion> {
+    matches!(cohesion, Cohesion::None).then_some(Cohesion::None)
+}
+
+/// The cohesion, if it is `sjkr`.
+#[inline(always)]
+fn sjkr(cohesion: &Cohesion) -> Option<Cohesion> {
+    let Cohesion::Sjkr(Pull { density, reduces: false }) = *cohesion else { return None };
+    Some(Cohesion::Sjkr(Pull { density, reduces: false }))
+}

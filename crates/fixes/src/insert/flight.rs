@@ -1,0 +1,214 @@
+//! Grains of a stream on their way to the face: they fly straight, free of all forces, and are let go where they pass it.
+
+use super::Inserting;
+use perigrain_base::diag::Result;
+use perigrain_base::math::vec3::{Vec3, add, length, scale, sub};
+use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way};
+use perigrain_world::field::{BOX, F, LISTS, MEMO, OMEGA, TAG, TORQUE, TRAVEL, V, X};
+use perigrain_world::{Numbers, World};
+
+/// A grain on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Held {
+    /// Its id.
+    pub tag: u32,
+    /// Where it passes the face.
+    pub foot: Vec3,
+    /// How far that is [length].
+    pub left: f64,
+    /// Its velocity from then on.
+    pub v: Vec3,
+    /// Its angular velocity from then on.
+    pub omega: Vec3,
+}
+
+/// Numbers of a grain in the world's memory.
+const NUMBERS: usize = 11;
+
+impl Held {
+    fn of(row: &[f64]) -> Self {
+        let three = |k: usize| [row[k], row[k + 1], row[k + 2]];
+        Self { tag: row[0] as u32, foot: three(1), left: row[4], v: three(5), omega: three(8) }
+    }
+
+    fn row(self) -> [f64; NUMBERS] {
+        let ([x, y, z], [u, v, w], [a, b, c]) = (self.foot, self.v, self.omega);
+        [f64::from(self.tag), x, y, z, self.left, u, v, w, a, b, c]
+    }
+
+    /// Adds grains to those on their way; their ids begin with `first`, which a grain that is gone may have had.
+    pub fn add(w: &mut World, key: Numbers, first: u32, more: impl Iterator<Item = Held>) {
+        let rows = w.memo.get_or(key, Vec::new);
+        let before = rows.chunks_exact(NUMBERS).take_while(|row| (row[0] as u32) < first).count();
+        rows.truncate(before * NUMBERS);
+        more.for_each(|held| rows.extend(held.row()));
+    }
+}
+
+/// Which of its two ops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// After the drift: places.
+    Flies,
+    /// After forces: takes them, and lets grains go.
+    Holds,
+}
+
+/// An op that moves or holds the grains on their way.
+pub struct Flight {
+    name: String,
+    part: Part,
+    key: Numbers,
+    normal: Vec3,
+    speed: f64,
+    /// Places of the grains in storage, in the order of the memory.
+    rows: Vec<Option<usize>>,
+    /// For which particles in which places that is.
+    stands: Option<[u64; 2]>,
+}
+
+impl Flight {
+    /// The ops of a stream that flies along `normal`.
+    pub fn ops(fix: &Inserting, normal: Vec3, speed: f64) -> Vec<Box<dyn Op>> {
+        let key: Numbers = fix.key().with("/held");
+        let op = |part, what: &str| -> Box<dyn Op> {
+            let name = format!("fix {} insert: {what}", fix.id);
+            Box::new(Self { name, part, key, normal, speed, rows: vec![], stands: None })
+        };
+        vec![op(Part::Flies, "flight"), op(Part::Holds, "hold")]
+    }
+
+    /// Whether no grain is on its way.
+    fn is_empty(&self, w: &World) -> bool {
+        w.memo.get(self.key).is_none_or(Vec::is_empty)
+    }
+
+    /// Finds the grains in storage, where particles have come, gone or changed places; those that are gone are forgotten, and when a run
+    /// begins also those that have been put elsewhere or have other ids now.
+    fn find(&mut self, w: &mut World, t: &Tick) {
+        let now = [w.rebuild.roster, w.rebuild.places];
+        let Some(held) = w.memo.get(self.key) else { return };
+        if self.stands == Some(now) && self.rows.len() * NUMBERS == held.len() {
+            return;
+        }
+        let mut held = held.clone();
+        let tags: Vec<u32> = held.chunks_exact(NUMBERS).map(|row| row[0] as u32).collect();
+        self.rows = vec![None; tags.len()];
+        let (first, last) = (tags.first().copied(), tags.last().copied());
+        for (i, tag) in w.particles.tag.iter().enumerate() {
+            if Some(*tag) < first || Some(*tag) > last {
+                continue;
+            }
+            if let Ok(k) = tags.binary_search(tag) {
+                self.rows[k] = Some(i);
+            }
+        }
+        if t.setup {
+            let stands = |row: &[f64], i: usize| {
+                let grain = Held::of(row);
+                let off = sub(self.place(&grain), w.particles.x[i]);
+                let off = w.domain.as_ref().map_or(off, |domain| domain.minimum_image(off));
+                length(off) <= 2.0 * self.speed * t.dt
+            };
+            let places = held.chunks_exact(NUMBERS).zip(&self.rows);
+            self.rows = places.map(|(row, place)| place.filter(|i| stands(row, *i))).collect();
+        }
+        if self.rows.contains(&None) {
+            let kept = held.chunks_exact(NUMBERS).zip(&self.rows).filter(|(_, row)| row.is_some());
+            held = kept.flat_map(|(held, _)| held.iter().copied()).collect();
+            self.rows.retain(Option::is_some);
+            w.memo.insert(self.key, held);
+        }
+        self.stands = Some(now);
+    }
+
+    /// Where a grain is by its way.
+    fn place(&self, grain: &Held) -> Vec3 {
+        add(grain.foot, scale(-grain.left, self.normal))
+    }
+
+    /// Brings each grain to its place at the end of this step.
+    fn fly(&self, w: &mut World, t: &Tick) -> Result<()> {
+        let way = self.speed * t.dt;
+        // They move as fast as whatever else may have moved them.
+        w.travel.went(2.0 * way);
+        let domain = w.domain()?.clone();
+        let mut held = w.memo.remove(self.key).unwrap_or_default();
+        for (row, i) in held.chunks_exact_mut(NUMBERS).zip(&self.rows) {
+            row[4] -= way;
+            let (grain, Some(i)) = (Held::of(row), *i) else { continue };
+            if !own(w, i) {
+                continue;
+            }
+            let place = self.place(&grain);
+            let x = &mut w.particles.x[i];
+            let off = sub(place, *x);
+            let near = domain.minimum_image(off);
+            // Where it has been wrapped since, it flies as that image.
+            *x = if near == off { place } else { add(*x, near) };
+        }
+        w.memo.insert(self.key, held);
+        Ok(())
+    }
+
+    /// Takes the forces from the grains, and lets those go that pass the face in the next step.
+    fn hold(&mut self, w: &mut World, t: &Tick) {
+        let flies = scale(self.speed, self.normal);
+        let held = w.memo.remove(self.key).unwrap_or_default();
+        let (mut kept, mut rows) = (Vec::with_capacity(held.len()), Vec::with_capacity(self.rows.len()));
+        for (row, i) in held.chunks_exact(NUMBERS).zip(&self.rows) {
+            let grain = Held::of(row);
+            let goes = !t.setup && grain.left < self.speed * t.dt;
+            if let Some(i) = i.filter(|i| own(w, *i)) {
+                let p = &mut w.particles;
+                (p.f[i], p.torque[i]) = ([0.0; 3], [0.0; 3]);
+                (p.v[i], p.omega[i]) = if goes { (grain.v, grain.omega) } else { (flies, [0.0; 3]) };
+            }
+            if !goes {
+                kept.extend_from_slice(row);
+                rows.push(*i);
+            }
+        }
+        self.rows = rows;
+        w.memo.insert(self.key, kept);
+    }
+}
+
+/// Whether this rank moves a particle.
+fn own(w: &World, i: usize) -> bool {
+    w.moved_in(i..i + 1).next().is_some_and(|rows| !rows.is_empty())
+}
+
+impl Op for Flight {
+    fn about(&self) -> About {
+        let needs = Needs::new().read(TAG | BOX | LISTS).keep(MEMO).only(&[self.key.text()]);
+        match self.part {
+            Part::Flies => About {
+                reports_travel: true,
+                ..About::new(&self.name, Stage::PostIntegrate, needs.write(X).keep(TRAVEL))
+            },
+            Part::Holds => {
+                About::new(&self.name, Stage::PostForce, needs.read(X).write(V | F | TORQUE | OMEGA))
+            }
+        }
+    }
+    fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
+        Rows::Own
+    }
+    fn way(&mut self, w: &mut World, t: &Tick, _: &mut Room) -> Way {
+        if t.unchanged || self.is_empty(w) { Way::Rests } else { Way::Alone }
+    }
+    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
+        if t.unchanged || self.is_empty(w) {
+            return Ok(());
+        }
+        self.find(w, t);
+        match self.part {
+            Part::Flies => self.fly(w, t),
+            Part::Holds => {
+                self.hold(w, t);
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! `pair_style gran` and its coefficients: native `pair_coeff` lines made from the table of properties before a run.
+
+use crate::Translator;
+use crate::model::{Cohesion, Given, Normal, Rolling, Tangential, parts, switch, switches};
+use crate::native::{Line, instead};
+use crate::reading::{inside, unknown, value};
+use perigrain_base::diag::{Code, Diagnostic, Result};
+use perigrain_lang::{Args, Command, Word};
+
+/// Damping along the normal that stands for none where damping across it is all there is [force/velocity].
+const FAINT: &str = "1e-100";
+
+/// A spring across the normal with 2/7 of the normal stiffness (`ktToKnUser`; the property of that name is not read: measured).
+const SOFTER: &str = "linear_history ratio 0.2857142857142857";
+
+impl Translator {
+    /// `pair_style gran …`.
+    pub(crate) fn pair_style(&mut self, cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
+        let asks = args.expect("the style")?.clone();
+        let mut given = parts(args, &cmd.name)?;
+        while let Some(word) = args.peek().cloned() {
+            match switch(args, &mut given.model)? {
+                Some(note) => self.notes.0.extend(note),
+                None if crate::model::PARTS.contains(&word.text.as_str()) => {
+                    let text = format!("`{}` stands behind a switch", word.text);
+                    let d = Diagnostic::error(Code::WRONG_ORDER, word.span, text);
+                    return Err(d.help("switches come last").into());
+                }
+                None => return Err(unknown(&word, "switch of a contact model", switches()).into()),
+            }
+        }
+        self.written = None;
+        self.pair = Some((cmd.clone(), given));
+        let mut line = Line::new(cmd, "pair_style");
+        line.say("granular", asks.span);
+        Ok(vec![line.done()])
+    }
+
+    /// The coefficients, where there are none yet or a property has changed since.
+    pub(crate) fn coefficients(&mut self) -> Result<Vec<Command>> {
+        let Some((cmd, given)) = self.pair.clone() else { return Ok(vec![]) };
+        if self.written == Some((self.version, self.types())) {
+            return Ok(vec![]);
+        }
+        // One that fails is refused once.
+        self.written = Some((self.version, self.types()));
+        let (mut lines, types) = (vec![], self.types().max(1));
+        for i in 0..types {
+            for j in i..types {
+                let mut line = Line::new(&cmd, "pair_coeff");
+                line.say(&format!("{} {}", i + 1, j + 1), cmd.name.span);
+                self.law(&mut line, &given, i, j)?;
+                lines.push(line.done());
+            }
+        }
+        self.note_unread();
+        Ok(lines)
+    }
+
+    /// The law of a pair of atom types, counted from 0.
+    pub(crate) fn law(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
+        let (model, asks) = (&given.model, &given.asks);
+        if model.is_stiffness() {
+            self.springs(line, given, i, j)?;
+        } else {
+            self.material(line, given, i, j)?;
+        }
+        let at = given.rolling;
+        let full = if model.torsion { " full" } else { "" };
+        if model.rolling != Rolling::Off {
+            let mu = self.of("coefficientRollingFriction", asks, i, j)?;
+            let name = match model.rolling {
+                Rolling::Cdt => "cdt",
+                Rolling::Epsd2 => "epsd2",
+                _ => "epsd",
+            };
+            line.say(&format!("rolling {name}"), at).word(&mu);
+            if matches!(model.rolling, Rolling::Epsd | Rolling::Epsd3) {
+                line.word(&self.of("coefficientRollingViscousDamping", asks, i, j)?);
+            }
+            if model.rolling == Rolling::Epsd3 {
+                line.word(&self.of("rollingStiffness", asks, i, j)?);
+            }
+            line.say(full, at);
+        }
+        let name = match model.cohesion {
+            Cohesion::Off => None,
+            Cohesion::Sjkr => Some("cohesion sjkr"),
+            Cohesion::Sjkr2 => Some("cohesion sjkr2"),
+        };
+        if let Some(name) = name {
+            line.say(name, given.cohesion).word(&self.of("cohesionEnergyDensity", asks, i, j)?);
+            line.say(if model.reduce { "reduce" } else { "" }, given.cohesion);
+        }
+        line.say(if model.limit { "limit_damping" } else { "" }, given.normal);
+        if i != j && !model.is_stiffness() {
+            let (e, nu) = (self.of("youngsModulus", asks, j, j)?, self.of("poissonsRatio", asks, j, j)?);
+            line.say("material", given.normal).word(&e).word(&nu);
+        }
+        Ok(())
+    }
+
+    /// Laws whose constants come from materials.
+    fn material(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
+        let (model, asks, at) = (&given.model, &given.asks, given.normal);
+        let modulus = self.of("youngsModulus", asks, i, i)?;
+        let nu = self.of("poissonsRatio", asks, i, i)?;
+        let e = self.of("coefficientRestitution", asks, i, j)?;
+        let name = match model.normal {
+            Normal::Hertz => "hertz/material",
+            Normal::Hysteresis => "hooke/hysteresis",
+            _ => "hooke/velocity",
+        };
+        line.say(name, at).word(&modulus).word(&e).word(&nu);
+        if model.normal != Normal::Hertz {
+            line.word(&self.of("characteristicVelocity", asks, i, j)?);
+        }
+        if model.normal == Normal::Hysteresis {
+            for name in [
+                "coefficientMaxElasticStiffness",
+                "coefficientAdhesionStiffness",
+                "coefficientPlasticityDepth",
+            ] {
+                line.word(&self.of(name, asks, i, j)?);
+            }
+        }
+        line.say("damping coeff_restitution", at);
+        let (spring, drag) = match (model.is_hertz(), model.softer) {
+            (true, _) => ("mindlin NULL", "NULL"),
+            (false, false) => ("linear_history NULL", "NULL"),
+            // The damping across the normal stays that of a spring as stiff as the normal one.
+            (false, true) => (SOFTER, "1"),
+        };
+        self.friction(line, given, spring, if model.undamped { "0" } else { drag }, (i, j))
+    }
+
+    /// The tangential model with its spring and its damping, a ratio to the normal one.
+    fn friction(
+        &mut self,
+        line: &mut Line,
+        given: &Given,
+        spring: &str,
+        damping: &str,
+        (i, j): (usize, usize),
+    ) -> Result<()> {
+        let at = given.tangential;
+        match given.model.tangential {
+            Tangential::Off => drop(line.say("tangential none", at)),
+            Tangential::History => {
+                let mu = self.of("coefficientFriction", &given.asks, i, j)?;
+                line.say(&format!("tangential {spring} {damping}"), at).word(&mu).say("slip spring", at);
+            }
+            Tangential::NoHistory => {
+                let mu = self.of("coefficientFriction", &given.asks, i, j)?;
+                line.say(&format!("tangential linear_nohistory {damping}"), at).word(&mu);
+            }
+        }
+        Ok(())
+    }
+
+    /// Laws whose constants are those of springs and dampers: kn, kt, gamman, gammat.
+    fn springs(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
+        let (model, asks, at) = (&given.model, &given.asks, given.normal);
+        let names = if model.absolute { ["gamman_abs", "gammat_abs"] } else { ["gamman", "gammat"] };
+        let [kn, kt] = [self.of("kn", asks, i, j)?, self.of("kt", asks, i, j)?];
+        let [normal, across] = [self.of(names[0], asks, i, j)?, self.of(names[1], asks, i, j)?];
+        let across = if model.undamped { instead(&across, "0") } else { across };
+        let (normal, ratio) = ratio(&normal, &across);
+        let (name, damping) = match (model.is_hertz(), model.absolute) {
+            (true, _) => ("hertz", "viscoelastic"),
+            (false, true) => ("hooke", "velocity"),
+            (false, false) => ("hooke", "mass_velocity"),
+        };
+        line.say(name, at).word(&kn).word(&normal).say(&format!("damping {damping}"), at);
+        let kind = if model.is_hertz() { "mindlin" } else { "linear_history" };
+        self.friction(line, given, &format!("{kind} {}", kt.text), &ratio, (i, j))
+    }
+}
+
+/// The damping along the normal, and the ratio of that across it to it.
+fn ratio(normal: &Word, across: &Word) -> (Word, String) {
+    match (value(normal), value(across)) {
+        (_, Some(0.0)) => (normal.clone(), "0".into()),
+        (Some(0.0), Some(b)) => {
+            let faint: f64 = FAINT.parse().unwrap_or(1e-100);
+            (instead(normal, FAINT), format!("{:e}", b / faint))
+        }
+        (Some(a), Some(b)) => (normal.clone(), format!("{}", b / a)),
+        _ => (normal.clone(), format!("$({}/{})", inside(across), inside(normal))),
+    }
+}

@@ -1,0 +1,44 @@
+//! Small words of LIGGGHTS: the check of the time step, `set`.
+
+use crate::native::Line;
+use crate::reading::{rounded, without_counterpart};
+use perigrain_base::diag::Result;
+use perigrain_lang::{Args, Command, Word};
+
+/// `fix ID group check/timestep/gran N fr fh …`.
+pub(crate) fn time_step(cmd: &Command, args: &mut Args) -> Vec<Command> {
+    let mut line = Line::styled(cmd, "dt/grain");
+    let words: Vec<Word> = args.rest().to_vec();
+    if let Some((first, rest)) = words.split_first() {
+        line.word(&rounded(first).0).words(rest);
+    }
+    vec![line.done()]
+}
+
+/// Keywords of `set` that have no counterpart, with what they are about and what to take instead.
+const FOREIGN: &[(&str, &str, &str)] = &[
+    ("shape", "a shape that is no sphere", "clumps of spheres: `molecule` and `fix rigid/small`"),
+    ("blockiness", "a shape that is no sphere", "clumps of spheres: `molecule` and `fix rigid/small`"),
+    ("meso_rho", "a fluid of particles", "grains and solids alone are computed here"),
+    ("sphkernel", "a fluid of particles", "grains and solids alone are computed here"),
+];
+
+/// `set … density … diameter …`: the density counts for the new diameter, in whichever order they stand.
+pub(crate) fn set(cmd: &Command) -> Result<Option<Vec<Command>>> {
+    for word in &cmd.args {
+        if let Some((_, what, help)) = FOREIGN.iter().find(|(name, _, _)| *name == word.text) {
+            return Err(without_counterpart(word, what, help).into());
+        }
+    }
+    let at = |name: &str| cmd.args.iter().position(|w| w.text == name);
+    let (Some(density), Some(diameter)) = (at("density"), at("diameter")) else { return Ok(None) };
+    if density > diameter || diameter + 1 >= cmd.args.len() {
+        return Ok(None);
+    }
+    let mut words = cmd.args.clone();
+    let moved: Vec<Word> = words.drain(diameter..diameter + 2).collect();
+    words.splice(density..density, moved);
+    let mut line = Line::new(cmd, "set");
+    line.words(&words);
+    Ok(Some(vec![line.done()]))
+}

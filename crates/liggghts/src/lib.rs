@@ -1,0 +1,155 @@
+//! Decks of LIGGGHTS: each line becomes native lines, whose words keep their places.
+//!
+//! A [`Translator`] reads a deck line by line. It holds what LIGGGHTS keeps in fixes and the native language in lines: properties of
+//! materials, templates of grains, their mixtures, surfaces. The physics is native; this crate knows words alone.
+//!
+//! Source: the manual of LIGGGHTS-PUBLIC 3.8.0; what it leaves open was measured with that program.
+
+mod coefficients;
+mod computes;
+mod dumps;
+mod idle;
+mod insertion;
+mod lammps;
+mod meshes;
+mod mixtures;
+mod model;
+mod native;
+mod old;
+mod properties;
+mod reading;
+mod rewrite;
+mod walls;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+use perigrain_base::diag::{Diagnostics, Result};
+use perigrain_lang::{Args, Command};
+use std::collections::{BTreeMap, BTreeSet};
+use words::{Take, find, style_at};
+
+pub use rewrite::{Rewritten, Target, rewrite};
+pub use words::known;
+
+/// What became of a line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Outcome {
+    /// It is no word of LIGGGHTS, or the native word is the same.
+    NotMine,
+    /// These lines, in order; none where the line is kept in the dialect's own tables.
+    Native(Vec<Command>),
+}
+
+/// What a deck of LIGGGHTS has defined so far.
+#[derive(Clone, Debug, Default)]
+pub struct Translator {
+    properties: BTreeMap<String, properties::Property>,
+    /// Counts changes of properties.
+    version: u64,
+    /// The number of atom types, where `create_box` gave it.
+    box_types: Option<usize>,
+    /// The `pair_style gran` line.
+    pair: Option<(Command, model::Given)>,
+    /// The old pair style, as walls name it.
+    old_pair: Option<&'static str>,
+    /// The version of the properties that coefficients were written for, and how many atom types there were.
+    written: Option<(u64, usize)>,
+    templates: BTreeMap<String, mixtures::Template>,
+    mixtures: BTreeSet<String>,
+    surfaces: BTreeMap<String, meshes::Surface>,
+    /// IDs of fixes that are only here.
+    own: BTreeSet<String>,
+    /// Words whose lack of effect has been noted.
+    idle: BTreeSet<String>,
+    notes: Diagnostics,
+}
+
+/// The words of a line that only a deck of LIGGGHTS has; `None` for any other line.
+pub fn mark(cmd: &Command) -> Option<String> {
+    let command = cmd.name.text.as_str();
+    // Lines of decks that have none are dismissed by their command.
+    let may = ["atom_style", "communicate", "hard_particles", "soft_particles", "pair_style", "fix", "dump"];
+    if !may.contains(&command) {
+        return None;
+    }
+    let style = cmd.args.get(style_at(command)).map_or("", |w| w.text.as_str());
+    if command == "fix" && style == "wall/gran" {
+        return walls::is_dialect(cmd).then(|| "fix wall/gran model".to_string());
+    }
+    if !find(cmd).is_some_and(|e| e.mark) {
+        return None;
+    }
+    Some(if style.is_empty() || style_at(command) == 0 && command.ends_with("_particles") {
+        command.to_string()
+    } else if command == "communicate" {
+        command.to_string()
+    } else {
+        format!("{command} {style}")
+    })
+}
+
+impl Translator {
+    /// Translates one line, whose values are put in, or are still to be where a deck is rewritten.
+    ///
+    /// # Errors
+    /// Words that are wrong in LIGGGHTS too, and words without counterpart.
+    pub fn line(&mut self, cmd: &Command) -> Result<Outcome> {
+        let mut before = match cmd.name.text.as_str() {
+            "run" | "minimize" | "rerun" | "write_data" => self.coefficients()?,
+            "clear" => {
+                *self = Self::default();
+                vec![]
+            }
+            "pair_style" => {
+                self.note_pair(cmd);
+                vec![]
+            }
+            _ => vec![],
+        };
+        let lines = match find(cmd) {
+            None => None,
+            Some(entry) => match entry.take {
+                Take::Same => None,
+                Take::Idle(why) => {
+                    self.idle(&cmd.name, why);
+                    Some(vec![])
+                }
+                Take::Refused(what, help) => {
+                    let at = cmd.args.get(style_at(entry.command)).filter(|_| !entry.style.is_empty());
+                    return Err(reading::without_counterpart(at.unwrap_or(&cmd.name), what, help).into());
+                }
+                Take::Lines(carry) => {
+                    let mut args = Args::new(cmd);
+                    let words = if entry.style.is_empty() { 0 } else { style_at(entry.command) + 1 };
+                    (0..words).for_each(|_| {
+                        args.next();
+                    });
+                    carry(self, cmd, &mut args)?
+                }
+            },
+        };
+        Ok(match (lines, before.is_empty()) {
+            (None, true) => Outcome::NotMine,
+            (None, false) => {
+                before.push(cmd.clone());
+                Outcome::Native(before)
+            }
+            (Some(lines), _) => {
+                before.extend(lines);
+                Outcome::Native(before)
+            }
+        })
+    }
+
+    /// Notes since the last call.
+    pub fn take_notes(&mut self) -> Diagnostics {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// `pair_style gran`.
+    fn pair_line(&mut self, cmd: &Command) -> Result<Option<Vec<Command>>> {
+        self.pair_style(cmd, &mut Args::new(cmd)).map(Some)
+    }
+}

@@ -1,0 +1,45 @@
+//! The page about decks of LIGGGHTS.
+
+use super::Entry;
+use perigrain_styles::Doc;
+use perigrain_styles::words::Syntax;
+
+pub(super) const LIGGGHTS: Entry = (
+    "liggghts",
+    Doc {
+        syntax: Syntax::Written(
+            "perigrain DECK\n\
+            perigrain translate IN [-o OUT] [-to perigrain|lammps]",
+        ),
+        summary: "Decks of LIGGGHTS: recognised by their words, read as native lines, rewritten on request.",
+        text: TEXT,
+        example: "perigrain in.conveyor\n\
+            perigrain check in.conveyor\n\
+            perigrain translate in.conveyor -o in.native\n\
+            perigrain translate in.conveyor -to lammps",
+    },
+);
+
+const TEXT: &str = "A deck with a word that only LIGGGHTS has (`atom_style granular`, `communicate`, `hard_particles`, \
+    `soft_particles`, `pair_style gran`, `fix property/global`, `particletemplate/sphere`, `insert/stream`, `mesh/surface`, \
+    `wall/gran model`, `check/timestep/gran`, `dump custom/vtk` …) is one of LIGGGHTS from there on; the note PG0305 says so. \
+    `-compat liggghts` or `compat liggghts` does it from the first line, `compat none` above the word forbids it. Each line becomes \
+    native lines, and messages point at the words of the deck. `translate` prints them, each below its line as a comment; variables \
+    and loops stay.\n\n\
+    What lines become:\n\n\
+    - `property/global`: a table; before a run it becomes `pair_coeff` lines, and again when a property has changed;\n\
+    - `pair_style gran model hertz|hooke|hertz/stiffness|hooke/stiffness|hooke/hysteresis`: `pair_style granular` with \
+    `hertz/material`, `hooke/velocity`, `hertz`, `hooke`; `tangential history` with `slip spring`; `limitForce` is \
+    `limit_damping`;\n\
+    - `rolling_friction cdt|epsd|epsd2|epsd3`, `cohesion sjkr|sjkr2`: `rolling`, `cohesion` of pair_coeff;\n\
+    - `wall/gran model … primitive type T`: `wall/gran coeff T`; `… mesh`: `wall/mesh coeff T of` surfaces;\n\
+    - `mesh/surface`, also `/stress`, `/planar`, `/stress/servo`: `fix surface`; `move` is `shift`, `rotate` is `turn`, \
+    `surface_vel` is `speed`, `surface_ang_vel` is `spin`, `reference_point` is `about`;\n\
+    - `particletemplate/sphere` with `particledistribution/discrete`: `mixture`, with shares of the mass, or of the number behind \
+    `/numberbased`;\n\
+    - `insert/pack`, `insert/rate/region`, `insert/stream`: `fix insert` with `pack`, `rate`, `stream`;\n\
+    - `check/timestep/gran`: `fix dt/grain`; `dump custom/vtk`: `dump vtk`; `dump mesh/gran/VTK`: `dump mesh/vtk`;\n\
+    - walls, `pour` and pair styles with numbers, as before LIGGGHTS 3: those of LAMMPS.\n\n\
+    Words about processes and neighbour lists have a note that they change nothing. Words without counterpart (superquadrics, \
+    fluids, coupled programs, bonds of forks) are refused by name, PG0148, with what comes nearest. \
+    [Coming from LIGGGHTS](../coming-from-liggghts.md) lists what differs.";
