@@ -37,6 +37,7 @@ mod installed_decks;
 mod interrupts;
 #[path = "lammps.rs"]
 mod lammps;
+mod liggghts_laws;
 mod lsp;
 mod meshes;
 mod partitions;
