@@ -93,6 +93,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("efield.rs", "regions", "only with `region`"),
     ("heat/peri.rs", "facts", "only with edges"),
     ("peri_strength.rs", "id", "only where a factor is refused"),
+    ("surface/op.rs", "radius", "only with `mode auto`"),
+    ("wall/op.rs", "type", "only with laws by type, or wear"),
 ];
 
 /// Pages whose example solids of LAMMPS refuse.

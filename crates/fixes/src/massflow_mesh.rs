@@ -35,7 +35,7 @@ impl Style for MassflowMesh {
                    to lean on it.\n\n\
                    Vector of 6 (extensive): mass and number so far, mass and number per time since the last step with \
                    output, deleted mass and number. The counts continue after a restart.",
-            example: "fix gate all surface gate.stl type 1\nfix out grains massflow/mesh mesh gate vec_side 0 0 -1",
+            example: "fix gate all surface blade.stl type 1 scale 0.001\nfix out grains massflow/mesh mesh gate vec_side 0 0 -1",
         }
     }
 }

@@ -37,7 +37,7 @@ impl Style for MoveMesh {
                    goes first.\n\n\
                    Positions are exact functions of time, whatever the time step; where a turn carries a shift (`rotate`, \
                    then `linear`) they are of second order in the step. LIGGGHTS adds up time step times velocity.",
-            example: "fix gear all surface gear.stl type 1\nfix drive all move/mesh mesh gear linear 0.1 0 0\n\
+            example: "fix gear all surface blade.stl type 1 scale 0.001\nfix drive all move/mesh mesh gear linear 0.1 0 0\n\
                       fix turn all move/mesh mesh gear rotate origin 0 0 0 axis 0 0 1 period 0.5",
         }
     }

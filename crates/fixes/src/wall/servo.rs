@@ -34,13 +34,13 @@ pub struct Line {
     #[word(keyword, name = "v", what = "the fastest speed", positive, shown = "required")]
     vel_max: Option<f64>,
     /// The gain of the error.
-    #[word(keyword, default = 0.01)]
+    #[word(keyword, name = "gain", default = 0.01)]
     kp: f64,
     /// The gain of its integral, which rests while the speed is at its limit [1/time].
-    #[word(keyword, default = 0.0)]
+    #[word(keyword, name = "gain", default = 0.0)]
     ki: f64,
     /// The gain of its rate [time].
-    #[word(keyword, default = 0.0)]
+    #[word(keyword, name = "gain", default = 0.0)]
     kd: f64,
     #[word(keyword, placed)]
     mode: Option<At<Mode>>,
