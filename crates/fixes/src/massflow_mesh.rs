@@ -200,7 +200,9 @@ impl Fix for Declared {
         let Some(surface) =
             cx.world().facts.get(*SURFACES).and_then(|all| all.look_up(&self.surface)).cloned()
         else {
-            return Ok(vec![]);
+            let text = format!("surface `{}` is gone", self.surface);
+            let d = Diagnostic::error(Code::UNKNOWN_NAME, cx.span(), text);
+            return Err(d.help("declare it again before the run, or remove this fix with `unfix`").into());
         };
         let keys = self.keys();
         let names = [keys.sums, keys.near, keys.counted, surface.keys.pose].map(Key::text);

@@ -33,8 +33,7 @@ impl Style for MoveMesh {
                    variables, which are integrated by the trapezoidal rule. Contacts feel the velocity.\n\n\
                    Several movers of one surface add up: the velocity of each point is the sum of theirs. A mover \
                    carries the axes of those declared after it; directions stay. So a wheel that drives along a line \
-                   is `linear`, then `rotate`. `unfix` ends a mover and leaves the surface where it is; the last one \
-                   goes first.\n\n\
+                   is `linear`, then `rotate`. `unfix` ends a mover and leaves the surface where it is.\n\n\
                    Positions are exact functions of time, whatever the time step; where a turn carries a shift (`rotate`, \
                    then `linear`) they are of second order in the step. LIGGGHTS adds up time step times velocity.",
             example: "fix gear all surface blade.stl type 1 scale 0.001\nfix drive all move/mesh mesh gear linear 0.1 0 0\n\
@@ -307,8 +306,14 @@ impl Fix for Declared {
         }
     }
 
-    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        // The surface moves itself.
-        Ok(vec![])
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let id = self.mover.id.clone();
+        if self.surface(cx.world()).is_some_and(|surface| surface.movers.iter().any(|own| own.id == id)) {
+            // The surface moves itself.
+            return Ok(vec![]);
+        }
+        let text = format!("surface `{}` is gone, or its line stands behind this one", self.surface);
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, cx.span(), text);
+        Err(d.help("declare this mover again behind the surface, or remove it with `unfix`").into())
     }
 }
