@@ -27,7 +27,7 @@ impl Style for MoveMesh {
         Doc {
             syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves a surface of `fix surface` along a line or about an axis.",
-            text: "With t the time since this line and ω = 2π/period. The surface goes on from where it is. `wiggle` shifts \
+            text: "With t the time since this line and ω = 2π/period. The surface moves from where it is. `wiggle` shifts \
                    it by A sin ω t, `riggle` turns it by A sin ω t, `viblin` and `vibrot` by Σ C (cos(ω t + φ) − cos φ) \
                    along or about their axis; `linear/variable` and `rotate/variable` take velocities from equal-style \
                    variables, which are integrated by the trapezoidal rule. Contacts feel the velocity.\n\n\
