@@ -251,7 +251,7 @@ impl Form for Flat {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        self.options(args, cx)
+        Servo::modify_some(&mut self.servo, args, cx)
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
@@ -284,14 +284,6 @@ impl Form for Flat {
 }
 
 impl Flat {
-    /// Options of `fix_modify`.
-    fn options(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        match &mut self.servo {
-            Some(servo) => servo.modify(args, cx),
-            None => crate::options::<crate::Counted>(args, cx).map(drop),
-        }
-    }
-
     /// Warns of grains on the far side of a plane, which would push them out.
     fn warn_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
         let Place::Planes(pair) = &self.place else { return Ok(()) };

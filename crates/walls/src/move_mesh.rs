@@ -1,9 +1,9 @@
 //! fix move/mesh: moves a surface on a path; several movers add up.
 
 use crate::elapsed::Elapsed;
-use crate::lineforce::direction;
+use crate::shared::direction;
+use crate::shared::forget;
 use crate::surface::SurfaceId;
-use crate::window::forget;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::Vec3;

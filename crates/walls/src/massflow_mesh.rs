@@ -1,7 +1,7 @@
 //! fix massflow/mesh: counts grains that pass through a surface, and their mass.
 
+use crate::shared::forget;
 use crate::surface::SurfaceId;
-use crate::window::forget;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
