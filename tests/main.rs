@@ -40,6 +40,7 @@ mod interrupts;
 mod lammps;
 #[path = "liggghts/main.rs"]
 mod liggghts;
+mod liggghts_laws;
 mod lsp;
 mod meshes;
 mod partitions;

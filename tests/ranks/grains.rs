@@ -154,17 +154,25 @@ fn several_laws_are_shared_out() {
         law("hertz/material 5000"),
         law("hertz/material 20000"),
     );
-    let deck = SHEARED
-        .replace("pair_style gran/hooke/history 5000 NULL 50 NULL 0.5 1\npair_coeff * *\n", &laws)
-        + "dump all all custom 20 d.*.txt id x y z omegay fx\ndump_modify all format float %.17g\nrun 40\nwrite_restart end.restart\n";
-    let alone = left_by(&deck, &["-threads", "1"]);
-    for (ranks, threads) in [("2", "1"), ("3", "2"), ("5", "1")] {
-        same(
-            &alone,
-            &left_by(&deck, &["-ranks", ranks, "-threads", threads]),
-            &format!("laws on {ranks} ranks"),
-        );
+    let wet = "pair_style granular\n\
+        pair_coeff 1 1 hertz/material 5000 0.5 0.3 damping coeff_restitution tangential mindlin NULL NULL 0.5 slip spring rolling epsd 0.1 0.3 full cohesion capillary 1e-4 0.5 20\n\
+        pair_coeff 2 2 hooke/hysteresis 5000 0.5 0.3 1 2 0.2 0.05 damping coeff_restitution tangential linear_history NULL NULL 0.5 slip spring rolling epsd2 0.1\n\
+        pair_coeff 1 2 hertz/material 5000 0.5 0.3 damping coeff_restitution tangential mindlin NULL NULL 0.5 slip spring rolling cdt 0.1 cohesion sjkr 20 material 20000 0.3\n";
+    let deck = |laws: &str| {
+        SHEARED.replace("pair_style gran/hooke/history 5000 NULL 50 NULL 0.5 1\npair_coeff * *\n", laws)
+            + "dump all all custom 20 d.*.txt id x y z omegay fx\ndump_modify all format float %.17g\nrun 40\nwrite_restart end.restart\n"
+    };
+    for deck in [&laws[..], wet].map(deck) {
+        let alone = left_by(&deck, &["-threads", "1"]);
+        for (ranks, threads) in [("2", "1"), ("3", "2"), ("5", "1")] {
+            same(
+                &alone,
+                &left_by(&deck, &["-ranks", ranks, "-threads", threads]),
+                &format!("laws on {ranks} ranks"),
+            );
+        }
     }
+    let deck = deck(&laws);
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("in.deck"), deck.replace("ave/time 1 1 1", "ave/time 10 1 10")).unwrap();
     let ops = measured(folder.path(), &["in.deck"]);

@@ -62,6 +62,15 @@ pub const STICKY_AGAIN: &str = "pair_style granular\n\
     fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
     thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
 
+/// The same pile, wet: springs that slide alone, torques against rolling, bridges that ruptured or did not; the floor yields.
+pub const WET_AGAIN: &str = "pair_style granular\n\
+    pair_coeff * * hertz/material 9000.0 0.5 0.3 damping coeff_restitution tangential mindlin NULL NULL 0.5 slip spring rolling epsd 0.1 0.3 cohesion capillary 0.001 0.5 20.0\n\
+    region floor plane 0 0 0.6 0 0 1 units box\n\
+    fix low all wall/gran/region granular hooke/hysteresis 9000.0 0.5 0.3 1.0 2.0 0.2 0.05 damping coeff_restitution tangential linear_history NULL NULL 0.4 slip spring rolling cdt 0.1 cohesion sjkr 5.0 region floor\n\
+    neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nfix 1 all nve/sphere\n\
+    fix 2 all gravity 1.0 vector 0.2 0 -1\ntimestep 0.001\ncompute er all erotate/sphere\n\
+    thermo_style custom step time ke c_er press\nthermo_modify format float %24.17g norm no\nthermo 5\n";
+
 /// The same pile with steps of two lengths, a floor that follows a variable, pairs left out and forces kept.
 pub const LEVELS_AGAIN: &str = "pair_style gran/hooke/history 5000.0 NULL 20.0 NULL 0.5 1\npair_coeff * *\n\
     neighbor 0.1 bin\nneigh_modify every 1 delay 0 check yes\nneigh_modify exclude type 1 2\n\
@@ -258,6 +267,7 @@ pub const SCENES: [Scene; 30] = [
     Scene { name: "bath pile", make: PILE, again: BATH_AGAIN, steps: 400, list: false },
     Scene { name: "stiff pile", make: PILE, again: STIFF_AGAIN, steps: 200, list: false },
     Scene { name: "sticky pile", make: PILE, again: STICKY_AGAIN, steps: 300, list: false },
+    Scene { name: "wet pile", make: PILE, again: WET_AGAIN, steps: 300, list: false },
     Scene { name: "older pile", make: PILE, again: OLDER_AGAIN, steps: 200, list: false },
     Scene { name: "levels pile", make: PAIR_OF_PILES, again: LEVELS_AGAIN, steps: 200, list: false },
     Scene { name: "powder pile", make: POWDER, again: POWDER_AGAIN, steps: 400, list: false },

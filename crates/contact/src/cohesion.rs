@@ -1,10 +1,13 @@
-//! Cohesion by the area of contact: a pull k A that begins and ends with the contact.
+//! Cohesion: a pull k A by the area of contact, which begins and ends with the contact, or that of a liquid bridge.
 //!
 //! LIGGGHTS manual, gran_cohesion_sjkr and gran_cohesion_sjkr2: "simplified JKR" with an energy density k [energy/volume]; the
 //! area of `sjkr2` on walls is measured with LIGGGHTS 3.8.0.
 
+mod bridge;
+
 use super::Geometry;
 use super::normal::geometric;
+pub use bridge::{Bridge, Profile};
 use perigrain_base::math::real::Real;
 use std::f64::consts::PI;
 
@@ -18,6 +21,8 @@ pub enum Cohesion {
     Sjkr(Pull),
     /// `sjkr2 k`: A = 4 π δ R̄, on walls 2 π δ R.
     Sjkr2(Pull),
+    /// `capillary`: a liquid bridge.
+    Capillary(Bridge),
 }
 
 /// Parameters of the pull.
@@ -36,13 +41,30 @@ impl Cohesion {
             Cohesion::None => "none",
             Cohesion::Sjkr(_) => "sjkr",
             Cohesion::Sjkr2(_) => "sjkr2",
+            Cohesion::Capillary(_) => "capillary",
         }
     }
 
-    fn pull_parameters(&self) -> Option<Pull> {
-        match *self {
-            Cohesion::None => None,
-            Cohesion::Sjkr(pull) | Cohesion::Sjkr2(pull) => Some(pull),
+    /// The word about its force that must be the same for mixing.
+    pub(crate) fn detail(&self) -> &'static str {
+        match self {
+            Cohesion::Capillary(Bridge { profile: Profile::Willett, .. }) => "cohesion … force willett",
+            _ if self.reduces() => "cohesion … reduce",
+            _ => "another cohesion",
+        }
+    }
+
+    /// Whether it acts beyond touch.
+    #[inline(always)]
+    pub fn spans(&self) -> bool {
+        matches!(self, Cohesion::Capillary(_))
+    }
+
+    /// The gap between surfaces at which an existing contact breaks [length].
+    pub fn gap(&self) -> f64 {
+        match self {
+            Cohesion::Capillary(bridge) => bridge.rupture,
+            _ => 0.0,
         }
     }
 
@@ -50,22 +72,23 @@ impl Cohesion {
     #[inline(always)]
     pub fn reduces(&self) -> bool {
         match self {
-            Cohesion::None => false,
+            Cohesion::None | Cohesion::Capillary(_) => false,
             Cohesion::Sjkr(pull) | Cohesion::Sjkr2(pull) => pull.reduces,
         }
     }
 
-    /// The model between two types whose models are of one kind: the geometric mean of k.
+    /// The model between two types whose models are of one kind: geometric means.
     pub fn mixed(&self, other: &Cohesion) -> Cohesion {
-        let Some((a, b)) = self.pull_parameters().zip(other.pull_parameters()) else { return Cohesion::None };
-        let pull = Pull { density: geometric(a.density, b.density), reduces: a.reduces };
-        match self {
-            Cohesion::Sjkr2(_) => Cohesion::Sjkr2(pull),
-            _ => Cohesion::Sjkr(pull),
+        let both = |a: &Pull, b: &Pull| Pull { density: geometric(a.density, b.density), reduces: a.reduces };
+        match (self, other) {
+            (Cohesion::Sjkr(a), Cohesion::Sjkr(b)) => Cohesion::Sjkr(both(a, b)),
+            (Cohesion::Sjkr2(a), Cohesion::Sjkr2(b)) => Cohesion::Sjkr2(both(a, b)),
+            (Cohesion::Capillary(a), Cohesion::Capillary(b)) => Cohesion::Capillary(a.mixed(b)),
+            _ => Cohesion::None,
         }
     }
 
-    /// The pull k A [force]; `on_wall`: the second side is a flat wall.
+    /// The pull [force]; `on_wall`: the second side is a flat wall.
     #[inline(always)]
     pub fn pull<R: Real>(&self, g: &Geometry<R>, on_wall: bool) -> R {
         let depth = g.overlap.most(g.overlap.like(0.0));
@@ -73,10 +96,11 @@ impl Cohesion {
             Cohesion::None => g.overlap.like(0.0),
             Cohesion::Sjkr(pull) => circle(g, depth, on_wall) * pull.density,
             Cohesion::Sjkr2(pull) => g.curvature * depth * (sjkr2(on_wall) * pull.density),
+            Cohesion::Capillary(bridge) => bridge.pull(g),
         }
     }
 
-    /// ∫ k A dδ from first touch: the energy to separate the two [energy].
+    /// ∫ F dδ of the pull F from first touch, negative beyond touch [energy].
     pub fn energy(&self, g: &Geometry, on_wall: bool) -> f64 {
         let depth = g.overlap.max(0.0);
         match self {
@@ -93,6 +117,7 @@ impl Cohesion {
                 pull.density * volume
             }
             Cohesion::Sjkr2(pull) => 0.5 * sjkr2(on_wall) * pull.density * g.curvature * depth * depth,
+            Cohesion::Capillary(bridge) => -bridge.work(g),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::{
     split_velocity,
 };
 use perigrain_base::math::real::Real;
-use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
+use perigrain_base::math::vec3::{Vec3, add, choose, cross, dot, length, scale, sub};
 use perigrain_world::Compat;
 
 /// The granular contact law of one pair of types (LAMMPS' `pair_style granular`, `gran/*` and walls), F on i from j:
@@ -88,7 +88,16 @@ impl Granular {
 
     /// The largest gap between surfaces before an existing contact ends (cohesion) [length].
     pub fn gap(&self, curvature: f64) -> f64 {
-        self.normal.gap(curvature)
+        self.normal.gap(curvature).max(self.cohesion.gap())
+    }
+
+    /// The geometry for what acts between surfaces that touch, where cohesion spans a gap between them.
+    #[inline(always)]
+    fn touching<R: Real>(&self, g: &Geometry<R>) -> Geometry<R> {
+        match self.cohesion.spans() {
+            true => Geometry { overlap: g.overlap.most(g.overlap.like(0.0)), ..*g },
+            false => *g,
+        }
     }
 
     /// Heat flow from the warmer to the colder side per temperature difference [energy/(time temperature)].
@@ -97,6 +106,7 @@ impl Granular {
         if self.heat == Heat::None {
             return g.overlap.like(0.0);
         }
+        let g = &self.touching(g);
         self.heat.conductance(g, self.normal.radius(g), self.is_on_wall)
     }
 
@@ -115,6 +125,9 @@ impl Granular {
 
     /// Current normal and tangential stiffness of the contact, dF/dδ and k_t [force/length].
     pub fn springs(&self, g: &Geometry) -> [f64; 2] {
+        if g.overlap < 0.0 && self.cohesion.spans() {
+            return [0.0; 2];
+        }
         let a = self.normal.radius(g);
         let secant = self.normal.push(g, a, &mut [0.0; MOST_MEMORY]).secant;
         [self.normal.tangent(g).max(0.0), self.spring.present(a, secant)]
@@ -123,6 +136,9 @@ impl Granular {
     /// Current stiffness and damping of the contact: normal and tangential [force/length, force time/length],
     /// then rolling and twisting [torque, torque time].
     pub fn resistance(&self, g: &Geometry, history: &[f64]) -> [[f64; 4]; 2] {
+        if g.overlap < 0.0 && self.cohesion.spans() {
+            return [[0.0; 4]; 2];
+        }
         let a = self.normal.radius(g);
         let secant = self.normal.push(g, a, &mut self.normal_memory(history)).secant;
         let form = self.damping.form(a, secant, g.mass);
@@ -148,37 +164,38 @@ impl Granular {
     /// The elastic and cohesive normal force, and, for a dissipative law, the stored energy, else zero.
     pub fn pressing(&self, g: &Geometry, history: &[f64]) -> [f64; 2] {
         let mut memory = self.normal_memory(history);
-        let held = if self.normal.flows() { self.normal.energy(g, &memory) } else { 0.0 };
-        let force = self.normal.push(g, self.normal.radius(g), &mut memory).force;
-        [force - self.cohesion.pull(g, self.is_on_wall), held - self.held_by_cohesion(g)]
-    }
-
-    /// The energy that cohesion takes to separate the two, where [`Granular::pressing`] counts energies.
-    fn held_by_cohesion(&self, g: &Geometry) -> f64 {
-        if self.normal.flows() { self.cohesion.energy(g, self.is_on_wall) } else { 0.0 }
+        let touching = self.touching(g);
+        let flows = self.flows();
+        let held = if flows { self.normal.energy(&touching, &memory) } else { 0.0 };
+        let force = self.normal.push(&touching, self.normal.radius(&touching), &mut memory).force;
+        let won = if flows { self.cohesion.energy(g, self.is_on_wall) } else { 0.0 };
+        [force - self.cohesion.pull(g, self.is_on_wall), held - won]
     }
 
     /// The elastic and cohesive normal force of one contact or of lanes; updates `history`.
     #[inline(always)]
     pub(crate) fn push<R: Real>(&self, g: &Geometry<R>, history: &mut [R]) -> R {
-        let force = self.normal.push(g, self.normal.radius(g), &mut history[self.before_normal()..]).force;
+        let touching = self.touching(g);
+        let own = &mut history[self.before_normal()..];
+        let force = self.normal.push(&touching, self.normal.radius(&touching), own).force;
         if self.cohesion == Cohesion::None { force } else { force - self.cohesion.pull(g, self.is_on_wall) }
     }
 
-    /// Whether the law dissipates energy apart from damping.
+    /// Whether the law dissipates energy apart from damping: plastic flow, or bridges that rupture.
     pub fn flows(&self) -> bool {
-        self.normal.flows()
+        self.normal.flows() || self.cohesion.spans()
     }
 
     /// The energy stored in the contact, given its history.
     pub fn stored(&self, g: &Geometry, history: &[f64]) -> Stored {
         let mut memory = self.normal_memory(history);
-        let a = self.normal.radius(g);
-        let normal = self.normal.energy(g, &memory) - self.cohesion.energy(g, self.is_on_wall);
-        let Push { force, secant, .. } = self.normal.push(g, a, &mut memory);
+        let touching = self.touching(g);
+        let a = self.normal.radius(&touching);
+        let normal = self.normal.energy(&touching, &memory) - self.cohesion.energy(g, self.is_on_wall);
+        let Push { force, secant, .. } = self.normal.push(&touching, a, &mut memory);
         let push = force - self.cohesion.pull(g, self.is_on_wall);
         let across = self.spring.energy(self.spring.present(a, secant), history);
-        Stored { push, normal, across, flows: self.normal.flows() }
+        Stored { push, normal, across, flows: self.flows() }
     }
 
     /// Force and torques of one contact; updates `history`, [`Granular::memory`] numbers. For grains whose law
@@ -198,6 +215,32 @@ impl Granular {
     /// may be anything.
     #[inline(always)]
     pub fn contact_of<R: Real>(
+        &self,
+        g: &Geometry<R>,
+        [i, j]: [&Motion<R>; 2],
+        ends: Ends<R>,
+        history: &mut [R],
+        step: Advance,
+    ) -> Wrench<R> {
+        let mut w = self.touched(&self.touching(g), [i, j], ends, history, step);
+        if self.cohesion.spans() {
+            // Across a gap nothing but the bridge acts, and histories end.
+            let zero = g.overlap.like(0.0);
+            let touches = g.overlap.above(zero);
+            for number in history {
+                *number = R::choose(touches, *number, zero);
+            }
+            for part in [&mut w.force, &mut w.torque_i, &mut w.torque_j] {
+                *part = choose::<R>(touches, *part, [zero; 3]);
+            }
+            w.force = sub(w.force, scale(self.cohesion.pull(g, self.is_on_wall), g.normal));
+        }
+        w
+    }
+
+    /// [`Granular::contact_of`] for surfaces that touch; without the pull of a bridge.
+    #[inline(always)]
+    fn touched<R: Real>(
         &self,
         g: &Geometry<R>,
         [i, j]: [&Motion<R>; 2],
@@ -230,7 +273,7 @@ impl Granular {
             normal_force.most(zero)
         };
         let load = normal_force;
-        if self.cohesion != Cohesion::None {
+        if self.cohesion != Cohesion::None && !self.cohesion.spans() {
             normal_force = normal_force - self.cohesion.pull(g, self.is_on_wall);
             if self.cohesion.reduces() {
                 carried = normal_force.abs();

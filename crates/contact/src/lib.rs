@@ -22,7 +22,7 @@ mod together;
 pub mod turning;
 pub mod walls;
 
-pub use cohesion::{Cohesion, Pull};
+pub use cohesion::{Bridge, Cohesion, Profile, Pull};
 pub use damping::Damping;
 pub use heat::{Area, Heat};
 pub use law::Granular;

@@ -152,7 +152,7 @@ impl Model {
             if *of_normal { "kt as a ratio" } else { "kt as a number" },
             if *drag == Drag::Matched { "x_gamma NULL" } else { "x_gamma as a number" },
             if self.rolling.is_full() { "rolling … full" } else { "rolling without full" },
-            if self.cohesion.reduces() { "cohesion … reduce" } else { "cohesion without reduce" },
+            self.cohesion.detail(),
         ]
     }
 

@@ -13,8 +13,8 @@ use perigrain_base::par;
 use perigrain_contact::driver::{Average, Curvature, Grains, Rule, Rules, Sweep};
 use perigrain_contact::fast::{Fast, Frame, Laws, Sums};
 use perigrain_contact::{
-    Advance, Classic, Damping, Friction, Granular, Heat, Model, Normal, Rolling, Sds, Tangential, Twisting,
-    normal,
+    Advance, Area, Cdt, Classic, Cohesion, Damping, Drag, Epsd, Friction, Granular, Heat, Model, Normal,
+    Pull, Rolling, Sds, Slip, Tangential, Twisting, normal,
 };
 use perigrain_neigh::list::{Reach, View, Wanted, pairs};
 use perigrain_world::contacts::Contacts;
@@ -163,6 +163,33 @@ fn plastic(a: u16, b: u16) -> Granular {
     let turning = Model { rolling: Rolling::Sds(sds(50.0)), twisting: Twisting::Sds(sds(5.0)), ..model };
     let law = if a == b { turning } else { model };
     Model { heat: Heat::Radius(0.7), ..law }.law(Compat::Perigrain)
+}
+
+/// The same where torques against rolling and cohesion act among grains of type 1, and others yield.
+fn turning(a: u16, b: u16) -> Granular {
+    if a + b == 4 {
+        return between(a, b);
+    }
+    let heat = Heat::Contact { conductivity: 0.7, area: Area::Overlap(1.0) };
+    let young = 300.0 * f64::from(a + b);
+    let cohesion = Cohesion::Sjkr(Pull { density: 2.0, reduces: false });
+    let friction = |kind, stiffness| Tangential {
+        drag: Drag::Matched,
+        slip: Slip::Spring,
+        ..Tangential::new(kind, stiffness, 0.0, 0.2)
+    };
+    let law = if a == b {
+        let normal = Normal::new(&normal::HERTZ_MATERIAL, &[young, 0.7, 0.3]);
+        let rolling = Rolling::Epsd(Epsd { mu: 0.2, eta: 0.1, factor: 2.25, full: true });
+        let friction = friction(Friction::Mindlin, None);
+        Model { rolling, cohesion, ..Model::new(normal, Damping::CoeffRestitution, friction) }
+    } else {
+        let normal = Normal::new(&normal::HOOKE_HYSTERESIS, &[young, 0.7, 0.3, 0.5, 2.0, 0.2, 0.05]);
+        let rolling = Rolling::Cdt(Cdt { mu: 0.2, full: false });
+        let friction = Tangential { of_normal: true, ..friction(Friction::LinearHistory, Some(0.3)) };
+        Model { rolling, ..Model::new(normal, Damping::CoeffRestitution, friction) }
+    };
+    Model { heat, ..law }.law(Compat::Perigrain)
 }
 
 /// A table of laws by types.
@@ -329,8 +356,9 @@ const PERIODS: [[f64; 3]; 3] = [[0.0; 3], [10.45, 9.5, 0.0], [10.45, 9.5, 11.4]]
 
 #[test]
 fn the_numbers_of_the_plain_driver() {
-    let scenes =
-        PERIODS.into_iter().flat_map(|p| [between as Table, sticky, plastic].map(|law| (scene(p), law)));
+    let scenes = PERIODS
+        .into_iter()
+        .flat_map(|p| [between as Table, sticky, plastic, turning].map(|law| (scene(p), law)));
     // Large grains reach farther: only boxes that are not periodic or wide enough.
     let large = [bidisperse(PERIODS[0]), bidisperse([10.45, 0.0, 0.0])].map(|s| (s, between as Table));
     let leaning = PERIODS[1..].iter().map(|p| (sheared(*p), between as Table));
@@ -369,7 +397,7 @@ fn the_numbers_of_the_plain_driver() {
 
 #[test]
 fn the_same_bits_for_threads_and_across_the_world() {
-    let dense = [sticky as Table, plastic].map(|law| (scene(PERIODS[2]), law));
+    let dense = [sticky as Table, plastic, turning].map(|law| (scene(PERIODS[2]), law));
     let leaning = [(sheared(PERIODS[2]), between as Table)];
     for (first, law) in
         dense.into_iter().chain(leaning).chain([(bidisperse([10.45, 0.0, 0.0]), between as Table)])
@@ -432,7 +460,7 @@ fn end(first: &Scene, mut fast: FastLoop) -> (Vec<Vec3>, Vec<Vec3>, Got) {
 
 #[test]
 fn all_forms_have_the_same_bits() {
-    let scenes = [between as Table, sticky, plastic].map(|law| (scene(PERIODS[1]), law));
+    let scenes = [between as Table, sticky, plastic, turning].map(|law| (scene(PERIODS[1]), law));
     for (first, law) in scenes.into_iter().chain([(sheared(PERIODS[1]), between as Table)]) {
         let run = |form| {
             let mut fast = FastLoop::new(false, law);

@@ -38,7 +38,10 @@ impl Style for GranularStyle {
                       pair_coeff * * hertz/material 5.0e7 0.7 0.3 damping tsuji tangential mindlin NULL 1.0 0.4\n\n\
                       pair_style granular\n\
                       pair_coeff * * eepa 5.0e7 0.7 0.3 0.6 0.0 2.0 1.5 1.5 damping coeff_restitution \
-                      tangential mindlin NULL 1.0 0.4",
+                      tangential mindlin NULL 1.0 0.4\n\n\
+                      pair_style granular\n\
+                      pair_coeff * * hertz/material 5.0e6 0.7 0.45 damping coeff_restitution \
+                      tangential mindlin NULL NULL 0.5 slip spring rolling cdt 0.1 cohesion sjkr 1.0e4",
         }
     }
 }

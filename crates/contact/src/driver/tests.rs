@@ -187,8 +187,14 @@ fn contacts_together_have_the_bits_of_single_ones() {
     let (rolling, twisting) = (crate::Rolling::Sds(slider), crate::Twisting::Sds(slider));
     let model = |friction| Model::new(normal, Damping::Tsuji, friction);
     let turning = Model { rolling, ..model(spring) };
-    let models = [model(plain), model(spring), turning, Model { twisting, ..turning }];
-    for (law, memory) in models.map(|m| m.law(Compat::Perigrain)).iter().zip([0, 3, 6, 7]) {
+    let slips = Tangential { slip: crate::Slip::Spring, ..spring };
+    let rolling = crate::Rolling::Epsd(crate::Epsd { mu: 0.1, eta: 0.3, factor: 2.25, full: false });
+    let cohesion = crate::Cohesion::Sjkr(crate::Pull { density: 3.0, reduces: true });
+    let torque = Model { rolling, cohesion, ..model(slips) };
+    let yields = Normal::new(&normal::HOOKE_HYSTERESIS, &[1e3, 0.8, 0.25, 0.5, 2.0, 0.2, 0.05]);
+    let yields = Model::new(yields, Damping::CoeffRestitution, plain);
+    let models = [model(plain), model(spring), turning, Model { twisting, ..turning }, torque, yields];
+    for (law, memory) in models.map(|m| m.law(Compat::Perigrain)).iter().zip([0, 3, 6, 7, 6, 4]) {
         assert_eq!(law.memory(), memory);
         for flowing in [false, true] {
             let together = row(law, flowing, false);

@@ -12,39 +12,30 @@ impl Granular {
     pub(crate) fn within(&self, work: impl Loop) {
         use {Damping::*, Friction::*};
         if self.spring.slip == Slip::Spring {
-            return self.within_slips_by_spring(work);
-        }
-        let whole = |kind| (kind, Slip::Whole);
-        let (normal, spring) = (hertz, whole(MindlinClassic));
-        if let Some(law) = self.known(normal, Viscoelastic, spring, Arm::Radius, (free, loose)) {
-            return work.run(&law);
-        }
-        let spring = whole(LinearHistoryClassic);
-        if let Some(law) = self.known(hooke, MassVelocity, spring, Arm::Radius, (free, loose)) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hertz, Tsuji, whole(Mindlin), Arm::Middle, (free, loose)) {
-            return work.run(&law);
-        }
-        work.run(self);
-    }
-
-    /// The same for `slip spring`.
-    #[inline(always)]
-    fn within_slips_by_spring(&self, work: impl Loop) {
-        use Damping::CoeffRestitution;
-        let (spring, arm) = ((Friction::Mindlin, Slip::Spring), Arm::Middle);
-        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, loose)) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, loose)) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, sjkr)) {
-            return work.run(&law);
-        }
-        if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, sjkr)) {
-            return work.run(&law);
+            // Decks of LIGGGHTS.
+            let (spring, arm) = ((Mindlin, Slip::Spring), Arm::Middle);
+            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, loose)) {
+                return work.run(&law);
+            }
+            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, loose)) {
+                return work.run(&law);
+            }
+            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, sjkr)) {
+                return work.run(&law);
+            }
+        } else {
+            let whole = |kind| (kind, Slip::Whole);
+            let spring = whole(MindlinClassic);
+            if let Some(law) = self.known(hertz, Viscoelastic, spring, Arm::Radius, (free, loose)) {
+                return work.run(&law);
+            }
+            let spring = whole(LinearHistoryClassic);
+            if let Some(law) = self.known(hooke, MassVelocity, spring, Arm::Radius, (free, loose)) {
+                return work.run(&law);
+            }
+            if let Some(law) = self.known(hertz, Tsuji, whole(Mindlin), Arm::Middle, (free, loose)) {
+                return work.run(&law);
+            }
         }
         work.run(self);
     }

@@ -377,3 +377,58 @@ fn yielding_contacts_follow_their_branches() {
     }
     assert_eq!(force.push(&g(1e-9), 0.0, &mut [0.0]).secant, force.push(&g(1e-5), 0.0, &mut [1e-5]).secant);
 }
+
+#[test]
+fn liquid_bridges_pull_across_a_gap() {
+    use crate::{Bridge, Profile};
+    let [radius, volume, tension, angle] = [0.001, 1e-11, 0.072, 0.3_f64];
+    let near = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 1e-11, "{found:e} {expected:e}");
+    };
+    // Equal spheres: R = R̄ + R̄. Rabinovich et al. 2005 with 2 d = H (√(1 + 2 V/(π R H²)) − 1), Willett et al. 2000.
+    let rabinovich = |r: f64, h: f64| {
+        let twice = h * ((1.0 + 2.0 * volume / (std::f64::consts::PI * r * h * h)).sqrt() - 1.0);
+        2.0 * std::f64::consts::PI * r * tension * angle.cos() / (1.0 + h / twice)
+    };
+    let willett = |r: f64, h: f64| {
+        let s = h * (r / volume).sqrt();
+        2.0 * std::f64::consts::PI * r * tension * angle.cos() / (1.0 + 1.05 * s + 2.5 * s * s)
+    };
+    let published: [(_, &dyn Fn(f64, f64) -> f64); 2] =
+        [(Profile::Rabinovich, &rabinovich), (Profile::Willett, &willett)];
+    for (profile, force) in published {
+        let bridge = Bridge::new(profile, volume, tension, angle);
+        // Lian et al. 1993: (1 + θ/2) V^(1/3).
+        near(bridge.rupture, 1.15 * volume.cbrt());
+        let cohesion = Cohesion::Capillary(bridge);
+        let law = Model { cohesion, ..hertz(0.9, sliding(0.5)) }.law(Compat::Perigrain);
+        assert_eq!(law.gap(0.5 * radius), bridge.rupture);
+        for h in [1e-6, 1e-5, 1e-4, 0.99 * bridge.rupture] {
+            let moving = Motion { velocity: [0.3, 0.2, 0.1], spin: [5.0, 6.0, 7.0] };
+            for (law, g, r) in
+                [(law, pair([radius; 2], -h), radius), (law.on_wall(), wall(radius, -h), 2.0 * radius)]
+            {
+                let mut history = [1e-6, 2e-6, 3e-6];
+                let w = law.contact(&g, &moving, &STILL, &mut history, STEP);
+                // Against the normal, which points to i; nothing rubs, turns or is remembered across a gap.
+                near(-w.force[0] * g.normal[0], force(r, h));
+                assert_eq!((w.force[1], w.torque_i, history), (0.0, [0.0; 3], [0.0; 3]));
+                let stored = |overlap: f64| law.stored(&Geometry { overlap, ..g }, &history);
+                near(stored(-h).push, -force(r, h));
+                // Energy returned by the force: dE/dδ = F.
+                let slope = (stored(-h + 1e-10).normal - stored(-h - 1e-10).normal) / 2e-10;
+                assert!((slope / -force(r, h) - 1.0).abs() < 1e-5, "{slope}");
+                assert_eq!((law.resistance(&g, &history), law.conductance(&g)), ([[0.0; 4]; 2], 0.0));
+            }
+        }
+        // In contact the pull is that at touch, beside Hertz' push.
+        let bare = hertz(0.9, sliding(0.5)).law(Compat::Perigrain);
+        let g = pair([radius; 2], 1e-6);
+        let [with, without] =
+            [law, bare].map(|law| law.contact(&g, &STILL, &STILL, &mut [0.0; 3], STEP).force[0]);
+        assert!(
+            ((with - without) / (2.0 * std::f64::consts::PI * radius * tension * angle.cos()) - 1.0).abs()
+                < 1e-11
+        );
+    }
+}

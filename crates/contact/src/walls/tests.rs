@@ -1,7 +1,10 @@
 //! Walls: lists, contacts, histories of springs, and loads on walls.
 
 use super::*;
-use crate::{Damping, Friction, Granular, Model, Normal, Rolling, Sds, Tangential, normal};
+use crate::{
+    Cdt, Cohesion, Damping, Epsd, Friction, Granular, Model, Normal, Pull, Rolling, Sds, Slip, Tangential,
+    normal,
+};
 use perigrain_world::Compat;
 
 fn law(mu: f64) -> Granular {
@@ -160,13 +163,19 @@ fn contacts_several_at_a_time_are_contacts_one_by_one() {
     let hooke = Normal::new(&normal::HOOKE, &[1e5, 20.0]);
     let springs = Tangential::new(Friction::Mindlin, None, 1.0, 0.5);
     let linear = Tangential::new(Friction::LinearHistory, Some(1e4), 1.0, 0.5);
-    for (normal, damping, friction) in [
-        (soft, Damping::Tsuji, springs),
-        (jkr, Damping::Viscoelastic, springs),
-        (hooke, Damping::Velocity, linear),
+    let sds = Rolling::Sds(Sds { stiffness: 1e3, damping: 0.1, mu: 0.2 });
+    let epsd = Rolling::Epsd(Epsd { mu: 0.2, eta: 0.3, factor: 2.25, full: true });
+    let cdt = Rolling::Cdt(Cdt { mu: 0.2, full: false });
+    let slips = Tangential { slip: Slip::Spring, ..springs };
+    let pull = Pull { density: 1e5, reduces: true };
+    for (normal, damping, friction, rolling, cohesion) in [
+        (soft, Damping::Tsuji, springs, sds, Cohesion::None),
+        (jkr, Damping::Viscoelastic, springs, sds, Cohesion::None),
+        (hooke, Damping::Velocity, linear, sds, Cohesion::None),
+        (soft, Damping::CoeffRestitution, slips, epsd, Cohesion::Sjkr(pull)),
+        (soft, Damping::CoeffRestitution, slips, cdt, Cohesion::Sjkr2(pull)),
     ] {
-        let rolling = Rolling::Sds(Sds { stiffness: 1e3, damping: 0.1, mu: 0.2 });
-        let model = Model { rolling, ..Model::new(normal, damping, friction) };
+        let model = Model { rolling, cohesion, ..Model::new(normal, damping, friction) };
         let law = model.law(Compat::Perigrain);
         let grains = s.grains();
         let (mut sweep, mut memory) = (WallSweep::default(), Contacts::default());
@@ -182,7 +191,8 @@ fn contacts_several_at_a_time_are_contacts_one_by_one() {
                 let own = Motion { velocity: s.v[i], spin: s.omega[i] };
                 let wall = Motion { velocity: touch.near.velocity, spin: [0.0; 3] };
                 let g = geometry(&touch.near, s.radius[i], s.radius[i]);
-                let expected = law.contact(&g, &own, &wall, &mut history[k * width..][..width], STEP);
+                let expected =
+                    law.on_wall().contact(&g, &own, &wall, &mut history[k * width..][..width], STEP);
                 assert_eq!(*wrench, expected, "{k}");
             }
             assert_eq!(memory.history, *history);

@@ -3,6 +3,9 @@
 pub mod classic;
 pub mod durations;
 mod models;
+mod sliding;
+mod sticking;
+mod turning;
 pub mod words;
 
 use perigrain_base::diag::Span;

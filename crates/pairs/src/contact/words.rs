@@ -1,7 +1,10 @@
 //! The words of `pair_coeff … granular`: models by name, each with its numbers; unknown models are refused by name.
 
 use super::Coeff;
-use super::models::{Cohesions, Dampings, Heating, Law, Rollings, Sliding, Twistings};
+use super::models::{Dampings, Law};
+use super::sliding::Sliding;
+use super::sticking::{Cohesions, Heating};
+use super::turning::{Rollings, Twistings};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::driver::{Average, Curvature};
 use perigrain_contact::{Arm, Cohesion, Damping, Friction, Heat, Model, Rolling, Twisting};
@@ -208,6 +211,14 @@ fn check_turning(normal: &Word, model: &Model) -> Result<()> {
         return conflict(format!("{name} does not go with {other}"), "leave one of the two out");
     }
     let own = matches!(model.tangential.kind, Friction::None | Friction::LinearNohistory);
+    if model.cohesion.spans() && (model.synchronized || !model.normal.takes_restitution()) {
+        let other = if model.synchronized { "`synchronized_verlet`" } else { model.normal.name() };
+        let text = format!("`cohesion capillary` does not go with {other}");
+        return conflict(
+            text,
+            "a bridge takes the place of other cohesion and acts along the line of centres",
+        );
+    }
     if matches!(model.rolling, Rolling::Epsd2(_)) && own {
         let known = model.normal.exponent() == 1.0 || model.normal.material().is_some();
         if !known {
