@@ -94,6 +94,8 @@ const SPARED: &[(&str, &str, &str)] = &[
     ("heat/peri.rs", "facts", "only with edges"),
     ("insert/op.rs", "mass", "only where a mass is filled up"),
     ("peri_strength.rs", "id", "only where a factor is refused"),
+    ("surface/op.rs", "radius", "only with `mode auto`"),
+    ("wall/op.rs", "type", "only with laws by type, or wear"),
 ];
 
 /// Pages whose example solids of LAMMPS refuse.

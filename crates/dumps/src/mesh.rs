@@ -38,7 +38,7 @@ impl Style for MeshStl {
             text: "All surfaces of a file are one solid, in the order of the line; without IDs all surfaces are written, in \
                    the order of their names. A `*` in the file's name becomes the step. Not in LAMMPS. The group means \
                    nothing.",
-            example: "fix gear all surface gear.stl type 1\ndump look all mesh/stl 100 gear_*.stl gear",
+            example: "fix gear all surface blade.stl type 1 scale 0.001\ndump look all mesh/stl 100 gear_*.stl gear",
         }
     }
 }
@@ -61,7 +61,7 @@ impl Style for MeshVtk {
                    … wear`; `owner` the rank, 0; `area`; `vel` the velocity `v` that contacts feel at the middle.\n\n\
                    Forces are those of the step that is written. Without IDs all surfaces are written, in the order of \
                    their names. Not in LAMMPS. The group means nothing.",
-            example: "fix chute all surface chute.stl type 1 wear finnie 1.0e-6\n\
+            example: "fix chute all surface blade.stl type 1 scale 0.001 wear finnie 1.0e-6\n\
                       dump look all mesh/vtk 100 chute_*.vtk stress wear area chute",
         }
     }

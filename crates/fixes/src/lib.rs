@@ -30,7 +30,6 @@ mod dt_grain;
 mod dt_guard;
 mod dt_reset;
 mod efield;
-mod elapsed;
 mod enforce2d;
 mod evaporate;
 pub mod external;
@@ -46,10 +45,8 @@ mod insert;
 mod kick;
 mod langevin;
 mod lineforce;
-mod massflow_mesh;
 mod momentum;
 mod move_fix;
-mod move_mesh;
 mod nve;
 mod nve_bpm_sphere;
 mod nve_limit;
@@ -71,13 +68,11 @@ mod spring;
 mod spring_self;
 mod store_force;
 mod store_state;
-mod surface;
 mod time_step;
 mod vector;
 mod viscous;
 mod viscous_nonlinear;
 mod viscous_sphere;
-mod wall;
 mod wall_flat;
 mod wall_law;
 mod wall_reflect;
@@ -91,6 +86,8 @@ pub use perigrain_styles::fix::{
 };
 use perigrain_styles::words::{Kind, Value};
 use perigrain_styles::{BuildCx, Shape};
+use perigrain_walls::elapsed;
+use perigrain_walls::shared::{RegionId, needs_spheres};
 use perigrain_world::World;
 use perigrain_world::field::{Fields, MU, QUAT};
 
@@ -137,10 +134,10 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &insert::Insert,
     &langevin::Langevin,
     &lineforce::LineForce,
-    &massflow_mesh::MassflowMesh,
+    &perigrain_walls::massflow_mesh::MassflowMesh,
     &momentum::Momentum,
     &move_fix::Move,
-    &move_mesh::MoveMesh,
+    &perigrain_walls::move_mesh::MoveMesh,
     &nve::Nve,
     &nve_limit::NveLimit,
     &nve_noforce::NveNoForce,
@@ -163,14 +160,14 @@ pub const FIXES: &[&dyn FixStyle] = &[
     &spring_self::SpringSelf,
     &store_force::StoreForce,
     &store_state::StoreState,
-    &surface::Surface,
+    &perigrain_walls::surface::Surface,
     &vector::VectorFix,
     &viscous::Viscous,
     &viscous_nonlinear::ViscousNonlinear,
     &viscous_sphere::ViscousSphere,
-    &wall::gran::WallGran,
-    &wall::region::WallGranRegion,
-    &wall::mesh::WallMesh,
+    &perigrain_walls::wall::gran::WallGran,
+    &perigrain_walls::wall::region::WallGranRegion,
+    &perigrain_walls::wall::mesh::WallMesh,
     &wall_flat::COLLOID,
     &wall_flat::HARMONIC,
     &wall_flat::LJ1043,
@@ -188,16 +185,6 @@ fn lying(w: &World) -> Fields {
     of(style.oriented, QUAT) | of(style.dipole, MU)
 }
 
-/// Refuses particles without a radius.
-fn needs_spheres(cx: &BuildCx, style: &str) -> Result<()> {
-    if cx.world.particles.style.sphere {
-        return Ok(());
-    }
-    let text = format!("fix {style} needs particles with a radius");
-    let d = Diagnostic::error(Code::WRONG_ORDER, cx.span, text);
-    Err(d.help("put `atom_style sphere` (or `hybrid sphere peri`) at the top of the deck").into())
-}
-
 /// Refuses particles that torques cannot rotate.
 fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
     if cx.world.particles.style.sphere {
@@ -207,18 +194,6 @@ fn needs_torques(name: &str, cx: &BuildCx) -> Result<()> {
     Err(Diagnostic::error(Code::WRONG_ORDER, cx.span, text)
         .help("put `atom_style sphere`, alone or in a hybrid, at the top of the deck")
         .into())
-}
-
-/// The ID of a region.
-#[derive(Clone)]
-struct RegionId(String);
-
-impl Value for RegionId {
-    const KIND: Kind = Kind::Region;
-    fn value(_: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        let word = args.expect("the region's ID")?;
-        cx.region(word).map(|_| Self(word.text.clone()))
-    }
 }
 
 /// An atom-style variable with its `v_`.

@@ -1,7 +1,7 @@
 //! fix lineforce: keeps only the force component along a line.
 
 use super::{Facts, Fix, FixStyle, Minimizing};
-use perigrain_base::diag::{Code, Result, fail};
+use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, dot};
 use perigrain_base::par;
 use perigrain_lang::Args;
@@ -9,6 +9,7 @@ use perigrain_plan::{Needs, Op, Stage};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
+pub use perigrain_walls::shared::direction;
 use perigrain_world::field::{F, MASK};
 use perigrain_world::{GroupId, World};
 
@@ -44,21 +45,6 @@ impl FixStyle for LineForce {
         let Line { along } = read(args, cx)?;
         Ok(Box::new(Held { id: cx.id.to_string(), group: cx.group, name: self.name(), along, plane: false }))
     }
-}
-
-/// Parses three numbers as a direction, normalized to length 1.
-///
-/// # Errors
-/// Words that are not numbers, and the direction 0 0 0.
-pub fn direction(args: &mut Args, _: &BuildCx) -> Result<Vec3> {
-    let span = args.here();
-    let unknown = args.peek().is_some_and(|w| w.unknown);
-    let n = [args.number("x")?, args.number("y")?, args.number("z")?];
-    let length = dot(n, n).sqrt();
-    if length > 0.0 {
-        return Ok(n.map(|a| a / length));
-    }
-    if unknown { Ok([1.0, 0.0, 0.0]) } else { fail(Code::BAD_VALUE, span, "0 0 0 is no direction") }
 }
 
 /// A declared fix lineforce or planeforce.

@@ -3,6 +3,7 @@
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_plan::When;
 use perigrain_styles::words::{At, Words};
+pub use perigrain_walls::shared::forget;
 use perigrain_world::{Numbers, World};
 
 /// `Nevery Nrepeat Nfreq`.
@@ -118,12 +119,6 @@ impl Schedule {
         w.memo.insert(kept.next, vec![next as f64, taken as f64]);
         due.then_some(found)
     }
-}
-
-/// Deletes all state below a key.
-pub fn forget(w: &mut World, key: Numbers) {
-    let below = format!("{key}/");
-    w.memo.retain(|name| !name.text().starts_with(&below));
 }
 
 /// Keys of an average in the world's memory.

@@ -175,8 +175,10 @@ syntax match perigrain_fix_style /\vheat\/peri\S@!/ contained
 syntax match perigrain_fix_style /\vindent\S@!/ contained
 syntax match perigrain_fix_style /\vlangevin\S@!/ contained
 syntax match perigrain_fix_style /\vlineforce\S@!/ contained
+syntax match perigrain_fix_style /\vmassflow\/mesh\S@!/ contained
 syntax match perigrain_fix_style /\vmomentum\S@!/ contained
 syntax match perigrain_fix_style /\vmove\S@!/ contained
+syntax match perigrain_fix_style /\vmove\/mesh\S@!/ contained
 syntax match perigrain_fix_style /\vnve\S@!/ contained
 syntax match perigrain_fix_style /\vnve\/bpm\/sphere\S@!/ contained
 syntax match perigrain_fix_style /\vnve\/limit\S@!/ contained
@@ -199,6 +201,7 @@ syntax match perigrain_fix_style /\vspring\S@!/ contained
 syntax match perigrain_fix_style /\vspring\/self\S@!/ contained
 syntax match perigrain_fix_style /\vstore\/force\S@!/ contained
 syntax match perigrain_fix_style /\vstore\/state\S@!/ contained
+syntax match perigrain_fix_style /\vsurface\S@!/ contained
 syntax match perigrain_fix_style /\vvector\S@!/ contained
 syntax match perigrain_fix_style /\vviscous\S@!/ contained
 syntax match perigrain_fix_style /\vviscous\/nonlinear\S@!/ contained
@@ -304,6 +307,8 @@ syntax match perigrain_dump_style /\vcustom\/gz\S@!/ contained
 syntax match perigrain_dump_style /\vimage\S@!/ contained
 syntax match perigrain_dump_style /\vlocal\S@!/ contained
 syntax match perigrain_dump_style /\vlocal\/gz\S@!/ contained
+syntax match perigrain_dump_style /\vmesh\/stl\S@!/ contained
+syntax match perigrain_dump_style /\vmesh\/vtk\S@!/ contained
 syntax match perigrain_dump_style /\vmovie\S@!/ contained
 syntax match perigrain_dump_style /\vvtk\S@!/ contained
 syntax match perigrain_dump_style /\vxyz\S@!/ contained

@@ -1,5 +1,7 @@
 //! fix wall/gran: planes normal to an axis, or a cylinder, as walls for grains.
 
+mod places;
+
 use super::planes::{Followed, Pair};
 use super::servo::{self, Servo, Steered};
 use super::words::{self, Material, Rest};
@@ -9,12 +11,13 @@ use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_contact::Wrench;
 use perigrain_contact::walls::{Cylinder, Planes, Touch, Tube, Wall};
-use perigrain_lang::{Args, Param};
+use perigrain_lang::Args;
 use perigrain_plan::{Stage, Tick};
-use perigrain_styles::words::{At, Axis, Each, Form as Behind, Kind, Nullable, Syntax, Value, Words, read};
+use perigrain_styles::words::{At, Each, Form as Behind, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 use perigrain_world::region::{INFINITE, Region, Shape};
 use perigrain_world::{Face, Key, Numbers, Outline, World};
+use places::{Moving, Named, Standing};
 use std::f64::consts::PI;
 
 /// The style.
@@ -69,81 +72,6 @@ struct Line {
     servo: Option<At<servo::Line>>,
     #[word(flatten)]
     rest: Rest,
-}
-
-/// The wall.
-#[derive(Words)]
-#[word(what = "wall")]
-enum Standing {
-    /// Planes across x at two places: numbers, `v_name` of equal-style variables, or one of them `NULL` where there is one plane.
-    Xplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
-    /// Planes across y.
-    Yplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
-    /// Planes across z.
-    Zplane(#[word(name = "lo hi", what = "the {} plane")] At<[Nullable<Param>; 2]>),
-    /// A cylinder about an axis parallel to x through y = c1, z = c2, which counts as flat; not in LAMMPS.
-    Xcylinder {
-        #[word(name = "R", what = "the radius of the cylinder", positive)]
-        radius: f64,
-        #[word(name = "c1 c2", what = "the place {} of the axis")]
-        center: [f64; 2],
-    },
-    /// The same parallel to y through z = c1, x = c2.
-    Ycylinder {
-        #[word(name = "R", what = "the radius of the cylinder", positive)]
-        radius: f64,
-        #[word(name = "c1 c2", what = "the place {} of the axis")]
-        center: [f64; 2],
-    },
-    /// A cylinder about z, whose curvature counts; or the same as the others parallel to z through x = c1, y = c2.
-    Zcylinder {
-        #[word(name = "R", what = "the radius of the cylinder", positive)]
-        radius: f64,
-        #[word(name = "c1 c2", what = "the place {} of the axis")]
-        center: Option<[f64; 2]>,
-    },
-}
-
-/// The wall; a region is that of another fix.
-struct Named(Standing);
-
-impl Value for Named {
-    const KIND: Kind = <Standing as Value>::KIND;
-    fn value(what: &str, args: &mut Args, cx: &BuildCx) -> Result<Self> {
-        if args.peek_text() == "region" {
-            let d = Diagnostic::error(Code::UNKNOWN_STYLE, args.here(), "a region is a wall of another fix");
-            return Err(d.help("write `fix … wall/gran/region … region ID`").into());
-        }
-        if args.is_empty() {
-            args.expect("the wall: xplane yplane zplane xcylinder ycylinder or zcylinder")?;
-        }
-        Standing::value(what, args, cx).map(Self)
-    }
-}
-
-/// A motion of the wall, of which there is one at most.
-#[derive(Words)]
-#[word(keywords)]
-enum Moving {
-    /// The wall is at its place + A − A cos ω t, ω = 2π/period, t since the fix was declared.
-    #[word(once)]
-    Wiggle {
-        #[word(name = "x|y|z", what = "direction of the motion")]
-        axis: At<Axis>,
-        #[word(name = "A", what = "the amplitude")]
-        amplitude: f64,
-        #[word(positive, what = "the period")]
-        period: f64,
-    },
-    /// The wall moves in its own plane at V; a cylinder along its axis. For another axis a cylinder about z turns clockwise seen from
-    /// above at the speed V, one with a centre right-handed at the angular velocity V, as seen from the centre of each grain.
-    #[word(once)]
-    Shear {
-        #[word(name = "x|y|z", what = "direction of the motion")]
-        axis: At<Axis>,
-        #[word(name = "V", what = "the velocity")]
-        speed: f64,
-    },
 }
 
 /// The words that begin what stands behind the force.
@@ -323,7 +251,7 @@ impl Form for Flat {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        self.options(args, cx)
+        Servo::modify_some(&mut self.servo, args, cx)
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
@@ -356,14 +284,6 @@ impl Form for Flat {
 }
 
 impl Flat {
-    /// Options of `fix_modify`.
-    fn options(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        match &mut self.servo {
-            Some(servo) => servo.modify(args, cx),
-            None => crate::options::<crate::Counted>(args, cx).map(drop),
-        }
-    }
-
     /// Warns of grains on the far side of a plane, which would push them out.
     fn warn_beyond(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<()> {
         let Place::Planes(pair) = &self.place else { return Ok(()) };

@@ -1,13 +1,13 @@
 //! Servo of walls: moves a wall along an axis, or turns it about one, so that grains press on it with a wanted force or torque.
 
 use super::op::FELT;
-use crate::lineforce::direction;
+use crate::shared::direction;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::{Vec3, dot, scale};
 use perigrain_contact::walls::{Shifted, Wall};
 use perigrain_lang::{Args, Param};
 use perigrain_plan::{Stage, Tick, When};
-use perigrain_styles::fix::options;
+use perigrain_styles::fix::{Counted, options};
 use perigrain_styles::words::{At, Words};
 use perigrain_styles::{BuildCx, Reading, SealCx};
 use perigrain_world::{Key, Numbers, Outline, World};
@@ -34,13 +34,13 @@ pub struct Line {
     #[word(keyword, name = "v", what = "the fastest speed", positive, shown = "required")]
     vel_max: Option<f64>,
     /// The gain of the error.
-    #[word(keyword, default = 0.01)]
+    #[word(keyword, name = "gain", default = 0.01)]
     kp: f64,
     /// The gain of its integral, which rests while the speed is at its limit [1/time].
-    #[word(keyword, default = 0.0)]
+    #[word(keyword, name = "gain", default = 0.0)]
     ki: f64,
     /// The gain of its rate [time].
-    #[word(keyword, default = 0.0)]
+    #[word(keyword, name = "gain", default = 0.0)]
     kd: f64,
     #[word(keyword, placed)]
     mode: Option<At<Mode>>,
@@ -207,6 +207,23 @@ impl Servo {
         self.gains = gains.unwrap_or(self.gains);
         self.stopped = integrate.map_or(self.stopped, |state| matches!(state, Integrate::Stop));
         Ok(())
+    }
+
+    /// Takes options of `fix_modify` of a wall that may have a servo.
+    ///
+    /// # Errors
+    /// Other words, and options of a servo where there is none.
+    pub fn modify_some(servo: &mut Option<Self>, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        let span = args.here();
+        match servo {
+            Some(servo) => servo.modify(args, cx),
+            None if args.peek().is_some_and(|word| Options::GRAMMAR.has(&word.text)) => {
+                options::<Options>(args, cx)?;
+                let d = Diagnostic::error(Code::CONFLICT, span, "this wall has no servo");
+                Err(d.help("add `servo axis 0 0 1 target_val F vel_max v` to its line").into())
+            }
+            None => options::<Counted>(args, cx).map(drop),
+        }
     }
 
     /// Key of its state below that of its wall.

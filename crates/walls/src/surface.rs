@@ -2,9 +2,9 @@
 
 mod op;
 
-use crate::lineforce::direction;
+use crate::shared::direction;
+use crate::shared::forget;
 use crate::wall::servo::{self, Controlled, Servo};
-use crate::window::forget;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
 use perigrain_base::math::body::{turn, turned};
@@ -42,7 +42,11 @@ impl Style for Surface {
                    `servo` moves the surface so that it presses on grains with a wanted force. With p the force with \
                    which it presses along the axis and F the wanted value, e = (F − p)/|F| and v = vel_max clamp(kp e + \
                    ki ∫ e dt + kd de/dt, ±1) along the axis; the force is that of the step before, so that nothing \
-                   moves in the first step. With `ctrlPV torque` it turns about the axis through `com` instead. \
+                   moves in the first step. The gains are 0.01, 0 and 0 unless given; the integral rests \
+                   while the speed is at its limit.\n\n\
+                   With `mode auto ratio q` the gains are not used: v = u (1 − 9 |p/F|) e for \
+                   |p/F| below 0.1, else 0.1 u e, with u = q r/Δt and r the least radius.\n\n\
+                   With `ctrlPV torque` it turns about the axis through `com` instead. \
                    `fix_modify ID` changes `target_val`, `vel_max`, the gains by `ctrlParam kp ki kd`, and by \
                    `servo/integrate stop` holds the surface.\n\n\
                    `wear finnie K` adds for each contact 2 K f |F| |v| Δt/area to its triangle while the grain comes \
@@ -51,9 +55,7 @@ impl Style for Surface {
                    Global vector: force (1–3) and torque (4–6) of grains on the surface, each force at the point of the \
                    surface nearest to the grain, and the point about which the \
                    torque counts where it is now (7–9): `about`, or the `com` of a servo. The group means nothing.",
-            example: "fix belt all surface conveyor.stl type 1 scale 0.001 shift 0 0 -0.0025 speed -4.5 0 0\n\
-                      fix wall grains wall/mesh granular hertz/material 5.0e7 0.7 0.3 tangential mindlin NULL 1.0 0.5 of \
-                      belt",
+            example: "fix belt all surface blade.stl type 1 scale 0.001 shift 0 0 -0.0025 speed -4.5 0 0",
         }
     }
 }
@@ -294,10 +296,7 @@ impl Fix for Declared {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        match &mut self.servo {
-            Some(servo) => servo.modify(args, cx),
-            None => crate::no_option(args),
-        }
+        Servo::modify_some(&mut self.servo, args, cx)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Motion of a mesh: position, rotation and velocity at each step.
 
 use crate::elapsed::Elapsed;
-use crate::lineforce::direction;
+use crate::shared::direction;
 use perigrain_base::diag::{Code, Result, fail};
 use perigrain_base::math::vec3::{Vec3, add, cross, length, scale, sub};
 use perigrain_contact::walls::{FacetNear, Near, Wall};

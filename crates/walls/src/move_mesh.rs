@@ -1,9 +1,9 @@
 //! fix move/mesh: moves a surface on a path; several movers add up.
 
 use crate::elapsed::Elapsed;
-use crate::lineforce::direction;
+use crate::shared::direction;
+use crate::shared::forget;
 use crate::surface::SurfaceId;
-use crate::window::forget;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::Vec3;
@@ -27,17 +27,16 @@ impl Style for MoveMesh {
         Doc {
             syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Moves a surface of `fix surface` along a line or about an axis.",
-            text: "With t the time since this line and ω = 2π/period. The surface goes on from where it is. `wiggle` shifts \
+            text: "With t the time since this line and ω = 2π/period. The surface moves from where it is. `wiggle` shifts \
                    it by A sin ω t, `riggle` turns it by A sin ω t, `viblin` and `vibrot` by Σ C (cos(ω t + φ) − cos φ) \
                    along or about their axis; `linear/variable` and `rotate/variable` take velocities from equal-style \
                    variables, which are integrated by the trapezoidal rule. Contacts feel the velocity.\n\n\
                    Several movers of one surface add up: the velocity of each point is the sum of theirs. A mover \
                    carries the axes of those declared after it; directions stay. So a wheel that drives along a line \
-                   is `linear`, then `rotate`. `unfix` ends a mover and leaves the surface where it is; the last one \
-                   goes first.\n\n\
+                   is `linear`, then `rotate`. `unfix` ends a mover and leaves the surface where it is.\n\n\
                    Positions are exact functions of time, whatever the time step; where a turn carries a shift (`rotate`, \
                    then `linear`) they are of second order in the step. LIGGGHTS adds up time step times velocity.",
-            example: "fix gear all surface gear.stl type 1\nfix drive all move/mesh mesh gear linear 0.1 0 0\n\
+            example: "fix gear all surface blade.stl type 1 scale 0.001\nfix drive all move/mesh mesh gear linear 0.1 0 0\n\
                       fix turn all move/mesh mesh gear rotate origin 0 0 0 axis 0 0 1 period 0.5",
         }
     }
@@ -307,8 +306,14 @@ impl Fix for Declared {
         }
     }
 
-    fn ops(&self, _cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
-        // The surface moves itself.
-        Ok(vec![])
+    fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        let id = self.mover.id.clone();
+        if self.surface(cx.world()).is_some_and(|surface| surface.movers.iter().any(|own| own.id == id)) {
+            // The surface moves itself.
+            return Ok(vec![]);
+        }
+        let text = format!("surface `{}` is gone, or its line stands behind this one", self.surface);
+        let d = Diagnostic::error(Code::UNKNOWN_NAME, cx.span(), text);
+        Err(d.help("declare this mover again behind the surface, or remove it with `unfix`").into())
     }
 }

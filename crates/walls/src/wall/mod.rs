@@ -11,7 +11,7 @@ pub mod region;
 pub mod servo;
 mod words;
 
-use super::window::forget;
+use super::shared::forget;
 use super::{Counted, Fix, needs_spheres, options};
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_contact::Wrench;

@@ -111,10 +111,7 @@ impl Form for Shaped {
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        match &mut self.servo {
-            Some(servo) => servo.modify(args, cx),
-            None => crate::options::<crate::Counted>(args, cx).map(drop),
-        }
+        Servo::modify_some(&mut self.servo, args, cx)
     }
 
     fn outline(&self) -> Outline {

@@ -1,7 +1,7 @@
 //! fix massflow/mesh: counts grains that pass through a surface, and their mass.
 
+use crate::shared::forget;
 use crate::surface::SurfaceId;
-use crate::window::forget;
 use crate::{Fix, FixStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_base::math::vec3::{Vec3, add, cross, dot, length, scale, sub};
@@ -35,7 +35,7 @@ impl Style for MassflowMesh {
                    to lean on it.\n\n\
                    Vector of 6 (extensive): mass and number so far, mass and number per time since the last step with \
                    output, deleted mass and number. The counts continue after a restart.",
-            example: "fix gate all surface gate.stl type 1\nfix out grains massflow/mesh mesh gate vec_side 0 0 -1",
+            example: "fix gate all surface blade.stl type 1 scale 0.001\nfix out grains massflow/mesh mesh gate vec_side 0 0 -1",
         }
     }
 }
@@ -200,7 +200,9 @@ impl Fix for Declared {
         let Some(surface) =
             cx.world().facts.get(*SURFACES).and_then(|all| all.look_up(&self.surface)).cloned()
         else {
-            return Ok(vec![]);
+            let text = format!("surface `{}` is gone", self.surface);
+            let d = Diagnostic::error(Code::UNKNOWN_NAME, cx.span(), text);
+            return Err(d.help("declare it again before the run, or remove this fix with `unfix`").into());
         };
         let keys = self.keys();
         let names = [keys.sums, keys.near, keys.counted, surface.keys.pose].map(Key::text);
@@ -227,17 +229,14 @@ struct Running {
     keys: Keys,
     surface: MeshSurface,
     slot: SlotId,
-    /// The box around the surface in its own frame.
-    bounds: [Vec3; 2],
+    /// The corners of the box around the surface in its own frame.
+    corners: Vec<Vec3>,
 }
 
 impl Running {
     fn new(fix: Declared, surface: MeshSurface, slot: SlotId) -> Self {
-        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in surface.corners() {
-            (0..3).for_each(|d| (lo[d], hi[d]) = (lo[d].min(p[d]), hi[d].max(p[d])));
-        }
-        Self { keys: fix.keys(), fix, surface, slot, bounds: [lo, hi] }
+        let corners = surface.corners();
+        Self { keys: fix.keys(), fix, surface, slot, corners }
     }
 
     fn run(&self, w: &mut World, t: &Tick) {
@@ -296,27 +295,41 @@ impl Running {
             .map(|row| (row[0] as u64, [row[1], row[2], row[3]]))
             .collect();
         let (p, bit) = (&w.particles, self.fix.group.bit());
-        let mut found = vec![];
-        for i in (0..p.len()).filter(|&i| p.mask[i] & bit != 0) {
-            let now = pose.undo(p.x[i]);
-            let way = t.dt * (length(sub(p.v[i], pose.velocity_at(p.x[i]))));
-            let [lo, hi] = &self.bounds;
-            if (0..3).all(|d| now[d] >= lo[d] - 2.0 * way && now[d] <= hi[d] + 2.0 * way) {
-                found.push((p.tag[i], i, now));
-            }
-        }
+        let (lo, hi, margin) = self.around(&pose, w.settings.neighbor.skin);
+        // The thinnest side first: most grains are beyond it.
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|a, b| (hi[*a] - lo[*a]).total_cmp(&(hi[*b] - lo[*b])));
+        let near = |i: &usize| {
+            let x = &p.x[*i];
+            axes.iter().all(|d| x[*d] >= lo[*d] && x[*d] <= hi[*d]) && p.mask[*i] & bit != 0
+        };
+        let mut found: Vec<(u32, usize, Vec3)> =
+            (0..p.len()).filter(near).map(|i| (p.tag[i], i, pose.undo(p.x[i]))).collect();
         found.sort_unstable_by_key(|one| one.0);
         let (mut passed, mut near) = (vec![], Vec::with_capacity(4 * found.len()));
         for (tag, i, now) in found {
             near.extend([f64::from(tag), now[0], now[1], now[2]]);
             let came = |v: Vec3| pose.undo(sub(p.x[i], scale(t.dt, v)));
-            let from = before.get(&u64::from(tag)).copied().unwrap_or_else(|| came(p.v[i]));
+            // A grain that the box or a line of the deck has put elsewhere has not come from where it was.
+            let here = |from: &&Vec3| length(sub(now, **from)) <= margin;
+            let from = before.get(&u64::from(tag)).filter(here).copied().unwrap_or_else(|| came(p.v[i]));
             if self.crosses(from, now, &pose) {
                 passed.push(i);
             }
         }
         w.memo.insert(self.keys.near, near);
         passed
+    }
+
+    /// The box around the surface where it is, wider by twice a skin, and that margin: no grain moves so far in a step.
+    fn around(&self, pose: &SurfacePose, skin: f64) -> (Vec3, Vec3, f64) {
+        let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in self.corners.iter().map(|p| pose.at(*p)) {
+            (0..3).for_each(|d| (lo[d], hi[d]) = (lo[d].min(p[d]), hi[d].max(p[d])));
+        }
+        let widest = (0..3).map(|d| hi[d] - lo[d]).fold(0.0, f64::max);
+        let margin = 2.0 * skin.max(1e-3 * widest);
+        (lo.map(|x| x - margin), hi.map(|x| x + margin), margin)
     }
 
     /// Whether a way in the frame of the surface passes a triangle towards its outer side.
