@@ -159,7 +159,8 @@ impl Fix for Declared {
         let all = cx.world().facts.get(*SURFACES);
         let surfaces: Vec<MeshSurface> = all.map_or(vec![], |all| all.values().cloned().collect());
         let names: Vec<&'static str> = surfaces.iter().flat_map(|surface| surface.keys.names()).collect();
-        let needs = Needs::new().read(V | RADIUS | MASS | MASK | KIND | MEMO).write(SLOTS | FACTS).only(&names);
+        let needs =
+            Needs::new().read(V | RADIUS | MASS | MASK | KIND | MEMO).write(SLOTS | FACTS).only(&names);
         let (me, when) = (self.clone(), When::Every(self.every));
         let mut warned = false;
         let look = move |w: &mut World, t: &Tick| {

@@ -63,6 +63,8 @@ pub struct Translator {
     own: BTreeSet<String>,
     /// Words whose lack of effect has been noted.
     idle: BTreeSet<String>,
+    /// The deck has chosen what becomes of grains that are lost.
+    lost: bool,
     notes: Diagnostics,
 }
 
@@ -97,13 +99,21 @@ impl Translator {
     /// Words that are wrong in LIGGGHTS too, and words without counterpart.
     pub fn line(&mut self, cmd: &Command) -> Result<Outcome> {
         let mut before = match cmd.name.text.as_str() {
-            "run" | "minimize" | "rerun" | "write_data" => self.coefficients()?,
+            "run" | "minimize" | "rerun" | "write_data" => self.before_run(cmd)?,
             "clear" => {
                 *self = Self::default();
                 vec![]
             }
             "pair_style" => {
                 self.note_pair(cmd);
+                vec![]
+            }
+            "thermo_style" => {
+                self.lost = false;
+                vec![]
+            }
+            "thermo_modify" => {
+                self.lost |= cmd.args.iter().any(|w| w.text == "lost");
                 vec![]
             }
             _ => vec![],
@@ -146,6 +156,18 @@ impl Translator {
     /// Notes since the last call.
     pub fn take_notes(&mut self) -> Diagnostics {
         std::mem::take(&mut self.notes)
+    }
+
+    /// What stands before a run: the coefficients, and that grains which leave the box are deleted, unless the deck says otherwise
+    /// (LIGGGHTS' default: measured).
+    fn before_run(&mut self, cmd: &Command) -> Result<Vec<Command>> {
+        let mut lines = self.coefficients()?;
+        if !std::mem::replace(&mut self.lost, true) && cmd.name.text != "write_data" {
+            let mut line = native::Line::new(cmd, "thermo_modify");
+            line.say("lost ignore", cmd.name.span);
+            lines.push(line.done());
+        }
+        Ok(lines)
     }
 
     /// `pair_style gran`.

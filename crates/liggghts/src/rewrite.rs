@@ -92,7 +92,7 @@ fn lines(translator: &mut Translator, cmd: &Command) -> Result<Outcome, Diagnost
         match translator.clone().line(&inner)? {
             Outcome::NotMine => {}
             Outcome::Native(lines) if lines.last().is_some_and(|last| last.args == inner.args) => {
-                before.extend(translator.coefficients()?);
+                before.extend(translator.before_run(&inner)?);
             }
             Outcome::Native(_) => {
                 let text = "a line of LIGGGHTS behind `if` cannot be rewritten";
@@ -118,7 +118,7 @@ fn put(out: &mut Rewritten, lines: &[Command], cmd: &Command, whole: &str, targe
             whole.lines().map(|line| line.trim().trim_end_matches('&').trim_end()).collect();
         out.text += &format!("# LIGGGHTS: {}\n", parts.join(" "));
     } else if !made.is_empty() {
-        out.text += "# LIGGGHTS: the coefficients of pair_style above\n";
+        out.text += "# LIGGGHTS: what lines above mean for a run\n";
     }
     for line in made {
         match target {

@@ -10,11 +10,15 @@ fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3
 fix m4 all property/global coefficientFriction peratomtypepair 1 0.5
 ";
 
+/// What stands before the first run.
+const LOST: &str = "thermo_modify lost ignore";
+
 /// The native lines of a deck, without comments.
 fn native(deck: &str) -> Vec<String> {
     let out = rewrite(deck, FileId(0), Target::Perigrain);
     assert!(!out.problems.has_errors(), "{}", out.problems);
-    out.text.lines().filter(|l| !l.starts_with('#') && !l.is_empty()).map(String::from).collect()
+    let shown = |l: &&str| !l.starts_with('#') && !l.is_empty() && *l != LOST;
+    out.text.lines().filter(shown).map(String::from).collect()
 }
 
 /// The native lines of a deck behind the material.
@@ -267,6 +271,17 @@ fn insertions_keep_their_amounts() {
         assert_eq!(lines[0], "mixture d number 5 sphere 1 $(2*${r}) 2500 1.0");
         assert_eq!(lines[2], format!("fix i all {wanted}"));
     }
+}
+
+#[test]
+fn grains_that_leave_the_box_are_deleted_unless_the_deck_says_otherwise() {
+    let text = |deck: &str| rewrite(deck, FileId(0), Target::Perigrain).text;
+    let once = text("atom_style granular\nrun 1\nrun 1\n");
+    assert_eq!(once.matches(LOST).count(), 1);
+    assert_eq!(text("atom_style granular\nthermo_modify lost error\nrun 1\n").matches(LOST).count(), 0);
+    // A new step table has its defaults again.
+    let again = text("atom_style granular\nthermo_modify lost error\nthermo_style one\nrun 1\n");
+    assert_eq!(again.matches(LOST).count(), 1);
 }
 
 #[test]
