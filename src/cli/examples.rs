@@ -37,6 +37,7 @@ const EXAMPLES: &[Example] = examples![
     "chute": "in.chute";
     "compact_tension": "in.compact_tension";
     "concrete_beam": "in.concrete_beam";
+    "conveyor": "in.conveyor", "belt.stl", "wall.stl", "face.stl", "gate.stl", "plate.stl";
     "crack_branching": "in.crack_branching";
     "ct_fracture": "in.ct_fracture" => "rock.nrrd", "make_stack.py";
     "dcb": "in.dcb";
