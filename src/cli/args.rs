@@ -210,7 +210,7 @@ pub const SWITCHES: &[Switch] = &[
     }),
     switch(
         &["-compat"],
-        "lammps[/2025|/2026]|liggghts",
+        "lammps|liggghts",
         "LAMMPS' numbers also where LAMMPS is wrong, or the words of LIGGGHTS",
         |o, v| {
             let word = v.one("lammps or liggghts")?;
