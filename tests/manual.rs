@@ -117,6 +117,7 @@ fn calls_of_the_program_work() {
     let _folder = Folder::new(super::folder());
     std::fs::write("in.plate", SCENE).unwrap();
     std::fs::write("in.ball", BALL).unwrap();
+    std::fs::write("in.grains", include_str!("liggghts/golden/epsd_pair.in")).unwrap();
     for page in pages().iter().filter(|p| is_for_the_shell(p)) {
         for line in page.doc.example.lines() {
             let words = line.split_whitespace().skip(1);

@@ -256,6 +256,10 @@ fn each_word_that_decks_use_is_declared() {
     let (mut lines, mut found) = (0, String::new());
     for file in &files {
         let text = String::from_utf8_lossy(&fs::read(file).unwrap()).into_owned();
+        // Decks of LIGGGHTS have words of their own, which `crates/liggghts` reads.
+        if text.lines().any(|line| line.split_whitespace().eq(["atom_style", "granular"])) {
+            continue;
+        }
         let name = file.strip_prefix(root).unwrap().display().to_string();
         // Files of small decks: each is one by itself.
         lines += format!("\n{text}")

@@ -36,7 +36,7 @@ impl Style for DefgradAtom {
             text: "Per-atom array of 10 columns: F_xx F_xy F_xz F_yx … F_zz, and J = det F, without dimension. \
                    F = (Σ ω w Y⊗ξ V_j) K⁻¹ with K = Σ ω w ξ⊗ξ V_j over the unbroken bonds, ξ a bond at the first run and Y \
                    the same bond now (Silling et al. 2007; Hartmann et al. 2023, equations 26 and 27); the influence ω is that of \
-                   the pair style. Exact for every family when the body deforms evenly, at surfaces too. A layer of \
+                   the pair style. Exact for every family when the body deforms evenly, at surfaces too.\n\nA layer of \
                    particles that stays in a plane of constant z, as in two dimensions, has F_zz = 1. All columns are 0, J \
                    among them, where no three bonds have independent directions, \
                    before the first run, for particles without a family, and outside the group.\n\n\

@@ -8,15 +8,15 @@ pub(super) const LIGGGHTS: Entry = (
     "liggghts",
     Doc {
         syntax: Syntax::Written(
-            "perigrain DECK\n\
+            "perigrain DECK [-compat liggghts]\n\
             perigrain translate IN [-o OUT] [-to perigrain|lammps]",
         ),
         summary: "Decks of LIGGGHTS: recognised by their words, read as native lines, rewritten on request.",
         text: TEXT,
-        example: "perigrain in.conveyor\n\
-            perigrain check in.conveyor\n\
-            perigrain translate in.conveyor -o in.native\n\
-            perigrain translate in.conveyor -to lammps",
+        example: "perigrain in.grains\n\
+            perigrain check in.grains\n\
+            perigrain translate in.grains -o in.native\n\
+            perigrain in.native",
     },
 );
 
