@@ -13,7 +13,7 @@ fn columns_are_those_of_liggghts() {
          neighbor 0.002 bin\ntimestep 1e-5\npair_style granular\n\
          pair_coeff * * hertz/material 5e6 0.7 0.45 damping coeff_restitution tangential mindlin NULL {ratio} 0.5\n\
          create_atoms 1 single SHIFT 0 0 units box\ncreate_atoms 1 single BESIDE 0 0 units box\n\
-         set atom 1 diameter 0.01 density 2500 omega 0 0 0\nset atom 2 diameter 0.016 density 2500 omega 0 0 5\n\
+         set atom 1 diameter 0.01 density 2500\nset atom 2 diameter 0.016 density 2500\n\
          velocity all set 0 0 0\ngroup a id 1\nvelocity a set 0.1 0.2 0\n\
          compute c all pair/local x1 y1 z1 x2 y2 z2 vx1 vy1 vz1 vx2 vy2 vz2 id1 id2 crosses forcex forcey forcez fx fy fz p1 p2 p3 \
          torquex torquey torquez h1 h2 h3 area delta cx cy cz cutoff radius\n\
@@ -30,9 +30,8 @@ fn columns_are_those_of_liggghts() {
     let found = row("0", "0.0129");
     let golden = [
         [0.0, 0.0, 0.0, 0.0129, 0.0, 0.0, 0.1, 0.2, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0].as_slice(),
-        &[-0.271247, -0.0795708, 0.0, -0.271247, 0.0, 0.0, 0.0, -0.0795708, 0.0],
-        // Without rolling friction: 4.95 mm times the force across.
-        &[0.0, 0.0, -0.00495 * 0.0795708, 0.0, 0.0, 0.0],
+        &[-0.271247, -0.0663781, 0.0, -0.271247, 0.0, 0.0, 0.0, -0.0663781, 0.0],
+        &[0.0, 0.0, -0.000328572, 0.0, 0.0, 0.0],
         &[1.92417e-6, 0.0001, 0.00496154, 0.0, 0.0],
     ]
     .concat();

@@ -12,6 +12,7 @@ use perigrain_styles::step_op::StepOp;
 use perigrain_styles::surface_speed::fastest;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
+use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{FACTS, KIND, MASK, MASS, MEMO, RADIUS, SLOTS, V};
 use perigrain_world::{GroupId, World};
 use std::f64::consts::PI;
@@ -137,11 +138,22 @@ impl Declared {
     }
 }
 
+/// Young's modulus and Poisson's ratio in the lines of the pair style.
+fn material(kind: u16, cx: &dyn SealCx) -> Option<(f64, f64)> {
+    cx.pair_styles().into_iter().find_map(|style| {
+        let of = |name: &str| {
+            let (style, name) = (style.to_string(), name.to_string());
+            cx.coefficient(&Coefficient { bond: false, style, name, types: (kind, kind) })
+        };
+        of("E").zip(of("nu"))
+    })
+}
+
 impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         let types = cx.world().types as u16;
-        let materials: Materials = (1..=types).map(|kind| cx.material(kind)).collect();
+        let materials: Materials = (1..=types).map(|kind| material(kind, cx)).collect();
         let slot = cx.slot(&format!("f_{}", self.id));
         cx.world().slots.get_mut(slot).vector.resize(3, 0.0);
         let all = cx.world().facts.get(*SURFACES);

@@ -159,13 +159,9 @@ pub trait Pair: DynClone + Send {
     /// Every mistake in the line.
     fn coeff(&mut self, pairs: &TypePairs, args: &mut Args, cx: &BuildCx) -> Result<()>;
 
-    /// The value of a coefficient that `fix adapt` may change, as the deck's lines set it.
+    /// The value of a coefficient that `fix adapt` may change, or of Young's modulus `E` and Poisson's ratio `nu` of grains, as the deck's
+    /// lines set it.
     fn coefficient(&self, _name: &str, _types: (u16, u16)) -> Option<f64> {
-        None
-    }
-
-    /// Young's modulus [pressure] and Poisson's ratio of the grains of a type, where its model has them.
-    fn material(&self, _kind: u16) -> Option<(f64, f64)> {
         None
     }
 

@@ -276,10 +276,6 @@ pub trait SealCx {
     fn coefficient(&self, _of: &Coefficient) -> Option<f64> {
         None
     }
-    /// Young's modulus [pressure] and Poisson's ratio of the grains of a type, where the pair style in force has them.
-    fn material(&self, _kind: u16) -> Option<(f64, f64)> {
-        None
-    }
     /// The bond style in force.
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
         None

@@ -150,11 +150,6 @@ impl SealCx for Sealer<'_> {
         self.graph.coefficient(of)
     }
 
-    fn material(&self, kind: u16) -> Option<(f64, f64)> {
-        let pair = &self.graph.pair.as_ref()?.pair;
-        std::iter::once(&**pair).chain(pair.parts()).find_map(|part| part.material(kind))
-    }
-
     fn bonds(&self) -> Option<Box<dyn BondForce>> {
         self.graph.bond.as_ref().map(|b| b.force.clone())
     }

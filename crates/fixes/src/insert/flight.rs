@@ -2,10 +2,14 @@
 
 use super::Inserting;
 use perigrain_base::diag::Result;
-use perigrain_base::math::vec3::{Vec3, add, length, scale, sub};
-use perigrain_plan::{About, Needs, Op, Room, Span as Rows, Stage, Tick, Way};
+use perigrain_base::math::vec3::{Vec3, add, dot, length, scale, sub};
+use perigrain_plan::{
+    About, Acts, BlockSums, Needs, Op, ParticleBlock, Room, Span as Rows, Stage, Tick, Way, fuse,
+};
 use perigrain_world::field::{BOX, F, LISTS, MEMO, OMEGA, TAG, TORQUE, TRAVEL, V, X};
 use perigrain_world::{Numbers, World};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// A grain on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,9 +67,14 @@ pub struct Flight {
     speed: f64,
     /// Places of the grains in storage, in the order of the memory.
     rows: Vec<Option<usize>>,
+    /// The same places in ascending order.
+    ascending: Arc<[u32]>,
     /// For which particles in which places that is.
     stands: Option<[u64; 2]>,
 }
+
+/// Grains that are let go: place in storage, velocity, angular velocity.
+type Going = Vec<(usize, Vec3, Vec3)>;
 
 impl Flight {
     /// The ops of a stream that flies along `normal`.
@@ -73,7 +82,16 @@ impl Flight {
         let key: Numbers = fix.key().with("/held");
         let op = |part, what: &str| -> Box<dyn Op> {
             let name = format!("fix {} insert: {what}", fix.id);
-            Box::new(Self { name, part, key, normal, speed, rows: vec![], stands: None })
+            Box::new(Self {
+                name,
+                part,
+                key,
+                normal,
+                speed,
+                rows: vec![],
+                ascending: Arc::new([]),
+                stands: None,
+            })
         };
         vec![op(Part::Flies, "flight"), op(Part::Holds, "hold")]
     }
@@ -120,6 +138,14 @@ impl Flight {
             w.memo.insert(self.key, held);
         }
         self.stands = Some(now);
+        self.line_up();
+    }
+
+    /// Keeps the places in ascending order as well.
+    fn line_up(&mut self) {
+        let mut ascending: Vec<u32> = self.rows.iter().flatten().map(|i| *i as u32).collect();
+        ascending.sort_unstable();
+        self.ascending = ascending.into();
     }
 
     /// Where a grain is by its way.
@@ -128,55 +154,72 @@ impl Flight {
     }
 
     /// Brings each grain to its place at the end of this step.
-    fn fly(&self, w: &mut World, t: &Tick) -> Result<()> {
+    fn fly(&self, w: &mut World, t: &Tick) {
         let way = self.speed * t.dt;
-        // They move as fast as whatever else may have moved them.
-        w.travel.went(2.0 * way);
-        let domain = w.domain()?.clone();
-        let mut held = w.memo.remove(self.key).unwrap_or_default();
+        let narrow = w.is_narrow();
+        let own: Vec<Range<usize>> = if narrow { w.moved_in(0..w.n()).collect() } else { vec![] };
+        let World { memo, particles, domain, travel, .. } = w;
+        let Some(held) = memo.get_mut(self.key) else { return };
+        let mut farthest = if narrow { 4.0 * way * way } else { 0.0_f64 };
         for (row, i) in held.chunks_exact_mut(NUMBERS).zip(&self.rows) {
             row[4] -= way;
-            let (grain, Some(i)) = (Held::of(row), *i) else { continue };
-            if !own(w, i) {
-                continue;
-            }
-            let place = self.place(&grain);
-            let x = &mut w.particles.x[i];
+            let Some(i) = i.filter(|i| !narrow || own.iter().any(|rows| rows.contains(i))) else { continue };
+            let place = self.place(&Held::of(row));
+            let x = &mut particles.x[i];
             let off = sub(place, *x);
-            let near = domain.minimum_image(off);
+            let near = domain.as_ref().map_or(off, |domain| domain.minimum_image(off));
             // Where it has been wrapped since, it flies as that image.
             *x = if near == off { place } else { add(*x, near) };
+            farthest = farthest.max(dot(near, near));
         }
-        w.memo.insert(self.key, held);
-        Ok(())
+        travel.went(farthest.sqrt());
     }
 
-    /// Takes the forces from the grains, and lets those go that pass the face in the next step.
-    fn hold(&mut self, w: &mut World, t: &Tick) {
-        let flies = scale(self.speed, self.normal);
-        let held = w.memo.remove(self.key).unwrap_or_default();
-        let (mut kept, mut rows) = (Vec::with_capacity(held.len()), Vec::with_capacity(self.rows.len()));
-        for (row, i) in held.chunks_exact(NUMBERS).zip(&self.rows) {
-            let grain = Held::of(row);
-            let goes = !t.setup && grain.left < self.speed * t.dt;
-            if let Some(i) = i.filter(|i| own(w, *i)) {
-                let p = &mut w.particles;
-                (p.f[i], p.torque[i]) = ([0.0; 3], [0.0; 3]);
-                (p.v[i], p.omega[i]) = if goes { (grain.v, grain.omega) } else { (flies, [0.0; 3]) };
-            }
-            if !goes {
-                kept.extend_from_slice(row);
-                rows.push(*i);
-            }
+    /// The grains that pass the face in the next step.
+    fn going(&self, w: &World, t: &Tick) -> Going {
+        let held = w.memo.get(self.key).map_or(&[][..], Vec::as_slice).chunks_exact(NUMBERS);
+        let goes = held.zip(&self.rows).filter(|(row, _)| row[4] < self.speed * t.dt);
+        goes.filter_map(|(row, i)| i.map(|i| (i, Held::of(row)))).map(|(i, h)| (i, h.v, h.omega)).collect()
+    }
+
+    /// Forgets the grains that pass the face in the next step.
+    fn let_go(&mut self, w: &mut World, t: &Tick) {
+        let Some(held) = w.memo.get_mut(self.key) else { return };
+        let least = self.speed * t.dt;
+        if held.chunks_exact(NUMBERS).all(|row| row[4] >= least) {
+            return;
         }
-        self.rows = rows;
-        w.memo.insert(self.key, kept);
+        let stays: Vec<bool> = held.chunks_exact(NUMBERS).map(|row| row[4] >= least).collect();
+        let kept = held.chunks_exact(NUMBERS).zip(&stays).filter(|(_, stays)| **stays);
+        let kept: Vec<f64> = kept.flat_map(|(row, _)| row.iter().copied()).collect();
+        *held = kept;
+        let mut stays = stays.into_iter();
+        self.rows.retain(|_| stays.next().unwrap_or(false));
+        self.line_up();
+    }
+
+    /// Takes the forces from the grains in a run's setup, in which none is let go.
+    fn hold(&self, w: &mut World) {
+        let flies = scale(self.speed, self.normal);
+        let p = &mut w.particles;
+        for i in self.rows.iter().flatten().copied() {
+            (p.f[i], p.torque[i]) = ([0.0; 3], [0.0; 3]);
+            (p.v[i], p.omega[i]) = (flies, [0.0; 3]);
+        }
     }
 }
 
-/// Whether this rank moves a particle.
-fn own(w: &World, i: usize) -> bool {
-    w.moved_in(i..i + 1).next().is_some_and(|rows| !rows.is_empty())
+/// Takes the forces from grains at these places, and gives those that are let go their own velocities.
+fn act(block: &mut ParticleBlock<'_>, ascending: &[u32], going: &Going) {
+    let rows = block.start..block.start + block.x.len();
+    let first = ascending.partition_point(|i| (*i as usize) < rows.start);
+    for i in ascending[first..].iter().map(|i| *i as usize).take_while(|i| *i < rows.end) {
+        let k = i - rows.start;
+        (block.f[k], block.torque[k]) = ([0.0; 3], [0.0; 3]);
+    }
+    for (i, v, omega) in going.iter().filter(|(i, ..)| rows.contains(i)) {
+        (block.v[i - rows.start], block.omega[i - rows.start]) = (*v, *omega);
+    }
 }
 
 impl Op for Flight {
@@ -187,16 +230,32 @@ impl Op for Flight {
                 reports_travel: true,
                 ..About::new(&self.name, Stage::PostIntegrate, needs.write(X).keep(TRAVEL))
             },
-            Part::Holds => {
-                About::new(&self.name, Stage::PostForce, needs.read(X).write(V | F | TORQUE | OMEGA))
-            }
+            Part::Holds => About {
+                fuses: true,
+                ..About::new(&self.name, Stage::PostForce, needs.read(X).write(V | F | TORQUE | OMEGA))
+            },
         }
     }
     fn span(&mut self, _: &mut World, _: &Tick) -> Rows {
         Rows::Own
     }
-    fn way(&mut self, w: &mut World, t: &Tick, _: &mut Room) -> Way {
-        if t.unchanged || self.is_empty(w) { Way::Rests } else { Way::Alone }
+    fn way(&mut self, w: &mut World, t: &Tick, room: &mut Room) -> Way {
+        if t.unchanged || self.is_empty(w) {
+            return Way::Rests;
+        }
+        if self.part == Part::Flies {
+            return Way::Alone;
+        }
+        self.find(w, t);
+        let (ascending, going) = (self.ascending.clone(), self.going(w, t));
+        room.act(move |block: &mut ParticleBlock<'_>| {
+            act(block, &ascending, &going);
+            BlockSums::default()
+        });
+        Way::Blocks
+    }
+    fn fused(&mut self, w: &mut World, t: &Tick, _: BlockSums) {
+        self.let_go(w, t);
     }
     fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
         if t.unchanged || self.is_empty(w) {
@@ -205,10 +264,15 @@ impl Op for Flight {
         self.find(w, t);
         match self.part {
             Part::Flies => self.fly(w, t),
+            Part::Holds if t.setup => self.hold(w),
             Part::Holds => {
-                self.hold(w, t);
-                Ok(())
+                let mut room = Room::default();
+                if self.way(w, t, &mut room) == Way::Blocks {
+                    fuse(w, Acts::new(std::slice::from_ref(&room), &[0]), &mut vec![]);
+                    self.let_go(w, t);
+                }
             }
         }
+        Ok(())
     }
 }

@@ -208,8 +208,13 @@ impl Pair for Declared {
         Ok(())
     }
 
-    fn material(&self, kind: u16) -> Option<(f64, f64)> {
-        self.given.get(&(kind, kind))?.model.normal.material()
+    fn coefficient(&self, name: &str, types: (u16, u16)) -> Option<f64> {
+        let (young, poisson) = self.given.get(&types)?.model.normal.material()?;
+        match name {
+            "E" => Some(young),
+            "nu" => Some(poisson),
+            _ => None,
+        }
     }
 
     fn declare(&self, w: &mut World) {
