@@ -244,7 +244,7 @@ pub const UNLIKE_AGAIN: &str = "pair_style peri/lps\npair_coeff * * material gla
     compute dmg all damage/atom\ncompute dsum all reduce sum c_dmg\n\
     thermo_style custom step time pe ke press c_dsum\nthermo_modify format float %24.17g\nthermo 5\n";
 
-pub const SCENES: [Scene; 30] = [
+pub const SCENES: [Scene; 31] = [
     Scene { name: "lattice", make: BLOCK, again: BLOCK_AGAIN, steps: 60, list: false },
     Scene { name: "list", make: BLOCK, again: BLOCK_AGAIN, steps: 40, list: true },
     Scene { name: "scattered", make: SCATTERED, again: BLOCK_AGAIN, steps: 60, list: false },

@@ -29,7 +29,7 @@ pub(crate) fn modified(cmd: &Command) -> Option<Vec<Command>> {
         |k: usize| cmd.args[k].text == "format" && cmd.args.get(k + 1).is_some_and(|w| w.text.contains('%'));
     let at = (0..cmd.args.len()).find(|k| old(*k))?;
     let mut line = Line::new(cmd, "dump_modify");
-    line.words(&cmd.args[..=at]).say("line", cmd.args[at].span).words(&cmd.args[at + 1..]);
+    line.words(&cmd.args[..=at]).put("line", cmd.args[at].span).words(&cmd.args[at + 1..]);
     Some(vec![line.done()])
 }
 
@@ -54,7 +54,7 @@ impl Translator {
         }
         if names == 0 {
             let ids: Vec<&str> = self.surfaces.keys().map(String::as_str).collect();
-            line.say(&ids.join(" "), cmd.args[2].span);
+            line.put(&ids.join(" "), cmd.args[2].span);
         }
         Ok(Some(vec![line.done()]))
     }
