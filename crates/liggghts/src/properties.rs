@@ -86,7 +86,7 @@ impl Translator {
             let text = format!("property `{}` is given as {}", name.text, wanted.word());
             return Err(Diagnostic::error(Code::BAD_VALUE, name.span, text).into());
         }
-        let mut types = 1;
+        let mut types: usize = 1;
         if shape == Shape::Pairs {
             let (word, note) = rounded(&number(args, "the number of atom types")?);
             self.notes.0.extend(note);
