@@ -2,7 +2,7 @@
 
 use crate::Translator;
 use crate::native::Line;
-use crate::reading::{number, rounded};
+use crate::reading::{number, rounded, without_counterpart};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -16,6 +16,10 @@ pub(crate) fn custom(cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
     line.word(args.expect("a file name")?);
     let mut seen = std::collections::BTreeSet::new();
     while let Some(word) = args.next() {
+        if ["p", "rho"].contains(&word.text.as_str()) {
+            let help = "grains and solids alone are computed here";
+            return Err(without_counterpart(word, "a fluid of particles", help).into());
+        }
         if seen.insert(word.text.clone()) {
             line.word(word);
         }

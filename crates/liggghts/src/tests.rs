@@ -274,7 +274,7 @@ fn insertions_keep_their_amounts() {
 }
 
 #[test]
-fn grains_that_leave_the_box_are_deleted_unless_the_deck_says_otherwise() {
+fn grains_that_leave_the_box_are_deleted_unless_a_line_forbids_it() {
     let text = |deck: &str| rewrite(deck, FileId(0), Target::Perigrain).text;
     let once = text("atom_style granular\nrun 1\nrun 1\n");
     assert_eq!(once.matches(LOST).count(), 1);
@@ -355,7 +355,10 @@ run 1
 ";
     let out = rewrite(deck, FileId(0), Target::Lammps);
     assert_eq!(out.lost, 1, "{}", out.text);
-    assert!(out.text.contains("# NOT IN LAMMPS: fix c all surface a.stl type 1 (LAMMPS has no walls of triangles)"));
+    assert!(
+        out.text
+            .contains("# NOT IN LAMMPS: fix c all surface a.stl type 1 (LAMMPS has no walls of triangles)")
+    );
     let line = out.text.lines().find(|l| l.starts_with("pair_coeff 1 2")).unwrap();
     let number = |k: usize| line.split_whitespace().nth(k).unwrap().parse::<f64>().unwrap();
     // E* and G* of the two materials from the line's one, by the formulas of two like bodies.
