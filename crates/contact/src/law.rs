@@ -222,7 +222,15 @@ impl Granular {
         history: &mut [R],
         step: Advance,
     ) -> Wrench<R> {
-        let mut w = self.touched(&self.touching(g), [i, j], ends, history, step);
+        // By reference: a copy would take registers from all other laws.
+        let across;
+        let near = if self.cohesion.spans() {
+            across = self.touching(g);
+            &across
+        } else {
+            g
+        };
+        let mut w = self.touched(near, [i, j], ends, history, step);
         if self.cohesion.spans() {
             // Across a gap nothing but the bridge acts, and histories end.
             let zero = g.overlap.like(0.0);

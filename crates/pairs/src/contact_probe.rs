@@ -288,6 +288,9 @@ impl Probe for ContactProbe {
 
     fn pressed(&self, [a, b]: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {
         let law = self.rules.get(a, b)?.law;
+        if law.normal.by_mass() {
+            return None;
+        }
         let radii = [2.0 * curvature; 2];
         let g = Geometry { normal: [1.0, 0.0, 0.0], overlap, radii, curvature, mass: 1.0 };
         let fresh = vec![0.0; law.memory()];

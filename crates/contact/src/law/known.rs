@@ -11,31 +11,39 @@ impl Granular {
     #[inline(always)]
     pub(crate) fn within(&self, work: impl Loop) {
         use {Damping::*, Friction::*};
-        if self.spring.slip == Slip::Spring {
+        let (bare, whole, alone) = ((free, loose), Slip::Whole, Slip::Spring);
+        match (self.damping, self.spring.kind) {
+            (Viscoelastic, MindlinClassic) => {
+                let spring = (MindlinClassic, whole);
+                if let Some(law) = self.known(hertz, Viscoelastic, spring, Arm::Radius, bare) {
+                    return work.run(&law);
+                }
+            }
+            (MassVelocity, LinearHistoryClassic) => {
+                let spring = (LinearHistoryClassic, whole);
+                if let Some(law) = self.known(hooke, MassVelocity, spring, Arm::Radius, bare) {
+                    return work.run(&law);
+                }
+            }
+            (Tsuji, Mindlin) => {
+                if let Some(law) = self.known(hertz, Tsuji, (Mindlin, whole), Arm::Middle, bare) {
+                    return work.run(&law);
+                }
+            }
             // Decks of LIGGGHTS.
-            let (spring, arm) = ((Mindlin, Slip::Spring), Arm::Middle);
-            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, loose)) {
-                return work.run(&law);
+            (CoeffRestitution, Mindlin) => {
+                let (damping, spring, arm) = (CoeffRestitution, (Mindlin, alone), Arm::Middle);
+                if let Some(law) = self.known(hertz, damping, spring, arm, bare) {
+                    return work.run(&law);
+                }
+                if let Some(law) = self.known(hertz, damping, spring, arm, (cdt, loose)) {
+                    return work.run(&law);
+                }
+                if let Some(law) = self.known(hertz, damping, spring, arm, (free, sjkr)) {
+                    return work.run(&law);
+                }
             }
-            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (cdt, loose)) {
-                return work.run(&law);
-            }
-            if let Some(law) = self.known(hertz, CoeffRestitution, spring, arm, (free, sjkr)) {
-                return work.run(&law);
-            }
-        } else {
-            let whole = |kind| (kind, Slip::Whole);
-            let spring = whole(MindlinClassic);
-            if let Some(law) = self.known(hertz, Viscoelastic, spring, Arm::Radius, (free, loose)) {
-                return work.run(&law);
-            }
-            let spring = whole(LinearHistoryClassic);
-            if let Some(law) = self.known(hooke, MassVelocity, spring, Arm::Radius, (free, loose)) {
-                return work.run(&law);
-            }
-            if let Some(law) = self.known(hertz, Tsuji, whole(Mindlin), Arm::Middle, (free, loose)) {
-                return work.run(&law);
-            }
+            _ => {}
         }
         work.run(self);
     }
@@ -60,7 +68,10 @@ impl Granular {
             && self.arm == arm
             && self.twisting == Twisting::None
             && !self.is_on_wall;
-        same.then_some(Self {
+        if !same {
+            return None;
+        }
+        Some(Self {
             normal,
             damping,
             spring: Spring { kind, slip, look, sync, of_normal, ..self.spring },

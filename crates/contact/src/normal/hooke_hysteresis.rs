@@ -77,6 +77,7 @@ impl HookeHysteresis {
 
 impl NormalLaw for HookeHysteresis {
     const BY_RADIUS: bool = false;
+    const BY_MASS: bool = true;
     const FLOWS: bool = true;
     const MEMORY: usize = 1;
 

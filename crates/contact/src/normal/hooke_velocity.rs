@@ -40,6 +40,7 @@ impl HookeVelocity {
 
 impl NormalLaw for HookeVelocity {
     const BY_RADIUS: bool = false;
+    const BY_MASS: bool = true;
 
     #[inline(always)]
     fn push<R: Real>(&self, g: &Geometry<R>, _a: R, _memory: &mut [R]) -> Push<R> {

@@ -46,6 +46,8 @@ pub trait NormalLaw: Copy + Debug + PartialEq {
     const STICKS: bool = false;
     /// Whether the force is computed elsewhere and read from the history.
     const IS_PRECOMPUTED: bool = false;
+    /// Whether the stiffness depends on the effective mass.
+    const BY_MASS: bool = false;
     /// Whether the work of the force apart from [`NormalLaw::energy`] is plastic flow and new surface, which
     /// the energy ledger records as such.
     const FLOWS: bool = false;
@@ -123,6 +125,11 @@ macro_rules! normal_laws {
             /// See [`NormalLaw::IS_PRECOMPUTED`].
             pub fn is_precomputed(&self) -> bool {
                 match self { $(Self::$Law(_) => $module::$Law::IS_PRECOMPUTED,)* }
+            }
+
+            /// See [`NormalLaw::BY_MASS`].
+            pub fn by_mass(&self) -> bool {
+                match self { $(Self::$Law(_) => $module::$Law::BY_MASS,)* }
             }
 
             /// See [`NormalLaw::FLOWS`].
