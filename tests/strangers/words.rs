@@ -237,7 +237,7 @@ fn words_of_lammps_lead_on() {
         (
             "fix 1 all mesh/surface file x.stl type 1",
             "LIGGGHTS' fix style `mesh/surface`",
-            "`fix wall/mesh granular",
+            "`fix surface FILE type T`",
         ),
         ("communicate single vel yes", "LIGGGHTS' command `communicate`", "leave the line out"),
         ("fix 1 all nve/spher", "unknown fix style `nve/spher`", "did you mean `nve/sphere`?"),

@@ -127,6 +127,17 @@ fn restarts_and_cuts_of_runs_continue_servos_to_the_bit() {
 }
 
 #[test]
+fn several_ranks_steer_alike() {
+    for (top, force) in tops() {
+        let deck = packing(&top, force, "run 12000");
+        let (alone, place) = ran(&deck);
+        let (several, well) = run_in(place.path(), &deck, &["-ranks", "3", "-threads", "1"]);
+        assert!(well, "{several}");
+        assert_eq!(table(&several, 4), table(&alone, 4), "{top}");
+    }
+}
+
+#[test]
 fn options_hold_and_change_a_servo() {
     let run = "run 100\nfix_modify cad servo/integrate stop\nrun 100\nfix_modify cad servo/integrate start target_val 2 vel_max 0.1 \
                ctrlParam 1 0 0\nrun 100";

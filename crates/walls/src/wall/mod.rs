@@ -47,7 +47,7 @@ trait Surface: Send {
         vec![]
     }
 
-    /// Takes note of the contacts of this step and of their sum: force, torque, heat.
+    /// Takes note of the contacts of this step, if it [shares](Surface::shares) what it keeps, and of their sum: force, torque, heat.
     fn feel(&mut self, _w: &mut World, _contacts: &[(&Touch, &Wrench)], _felt: [f64; op::FELT], _t: &Tick) {}
 
     /// Whether other ops read or change what it keeps in `memo`.

@@ -334,7 +334,10 @@ impl WallOp {
 
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
-        let touching: Vec<_> = contacts(&self.parts).collect();
+        let touching: Vec<_> = match self.local > 0 || self.surface.shares() {
+            true => contacts(&self.parts).collect(),
+            false => vec![],
+        };
         let local = self.surface.local(w, &touching, t);
         self.surface.feel(w, &touching, felt, t);
         if w.is_narrow() {
