@@ -60,7 +60,7 @@ enum By {
 #[derive(Words)]
 #[word(what = "kind of grain")]
 enum Grains {
-    /// Spheres of a type, their diameter [length], density [density] and share.
+    /// Spheres of a type: their diameter, density and share.
     Sphere(
         #[word(name = "TYPE", what = "the type")] OneType,
         #[word(name = "DIAM", what = "the diameter", positive)] f64,

@@ -90,7 +90,8 @@ impl Declared {
         // The limit is per step of the deck, even when that is divided into shorter ones.
         let step = w.clock.dt;
         let p = &mut w.particles;
-        let (most, radius) = (self.most, &p.radius[..]);
+        let most = self.most;
+        let radius = if let Most::Radii(_) = most { &p.radius[..] } else { &[] };
         let fastest = |i: usize| match most {
             Most::Way(way) => way / step,
             Most::Radii(part) => part * radius[i] / step,

@@ -167,9 +167,15 @@ impl Flight {
             let place = self.place(&Held::of(row));
             let x = &mut particles.x[i];
             let off = sub(place, *x);
-            let near = domain.as_ref().map_or(off, |domain| domain.minimum_image(off));
+            let square = dot(off, off);
+            if square <= 4.0 * way * way {
+                *x = place;
+                farthest = farthest.max(square);
+                continue;
+            }
             // Where it has been wrapped since, it flies as that image.
-            *x = if near == off { place } else { add(*x, near) };
+            let near = domain.as_ref().map_or(off, |domain| domain.minimum_image(off));
+            *x = add(*x, near);
             farthest = farthest.max(dot(near, near));
         }
         travel.went(farthest.sqrt());

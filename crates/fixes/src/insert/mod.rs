@@ -38,7 +38,7 @@ impl Style for Insert {
         Doc {
             syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Inserts grains of a mixture: fills a region, adds grains at a rate, or lets a stream come out of a face.",
-            text: "Not in LAMMPS. `pack` counts what is in the region when it acts, (f V − ΣV)/⟨V⟩, N − n or (M − Σm)/⟨m⟩ grains are \
+            text: "Not in LAMMPS. `pack` counts what is in the region when it acts: (f V − ΣV)/⟨V⟩, N − n or (M − Σm)/⟨m⟩ grains are \
                    missing, with the means over the number of grains; `rate` adds r N Δt grains every N steps until N or M/⟨m⟩, rounded \
                    down, are there. A part of a grain is one more with its probability. New grains join `all` and the fix's \
                    group, the largest kinds first. Places are tried `tries` times the number of grains; what finds none is lost \

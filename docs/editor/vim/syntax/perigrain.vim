@@ -54,6 +54,7 @@ syntax match perigrainCommand /\v^\s*\zsmaterial\S@!/
 syntax match perigrainCommand /\v^\s*\zsmin_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zsmin_style\S@!/
 syntax match perigrainCommand /\v^\s*\zsminimize\S@!/
+syntax match perigrainCommand /\v^\s*\zsmixture\S@!/
 syntax match perigrainCommand /\v^\s*\zsmolecule\S@!/
 syntax match perigrainCommand /\v^\s*\zsneigh_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zsneighbor\S@!/
@@ -157,6 +158,7 @@ syntax match perigrain_fix_style /\vdeform\/pressure\S@!/ contained
 syntax match perigrain_fix_style /\vdeposit\S@!/ contained
 syntax match perigrain_fix_style /\vdrag\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/critical\S@!/ contained
+syntax match perigrain_fix_style /\vdt\/grain\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/guard\S@!/ contained
 syntax match perigrain_fix_style /\vdt\/reset\S@!/ contained
 syntax match perigrain_fix_style /\vefield\S@!/ contained
@@ -173,6 +175,7 @@ syntax match perigrain_fix_style /\vheat\/flux\S@!/ contained
 syntax match perigrain_fix_style /\vheat\/held\S@!/ contained
 syntax match perigrain_fix_style /\vheat\/peri\S@!/ contained
 syntax match perigrain_fix_style /\vindent\S@!/ contained
+syntax match perigrain_fix_style /\vinsert\S@!/ contained
 syntax match perigrain_fix_style /\vlangevin\S@!/ contained
 syntax match perigrain_fix_style /\vlineforce\S@!/ contained
 syntax match perigrain_fix_style /\vmassflow\/mesh\S@!/ contained
