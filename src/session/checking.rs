@@ -109,8 +109,8 @@ impl Session {
             return;
         };
         let types = self.world.types as u16;
-        let told = self.checking() && self.dialect.lawless;
-        let types = if told { 0 } else { types };
+        let noted = self.checking() && self.dialect.lawless;
+        let types = if noted { 0 } else { types };
         let missing: Vec<String> = (1..=types)
             .flat_map(|i| (i..=types).map(move |j| (i, j)))
             .filter(|&(i, j)| !node.pair.covers(i, j))

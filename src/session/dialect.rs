@@ -82,7 +82,8 @@ impl Session {
 
     /// Adds to the problems of a line what its words are in LIGGGHTS.
     pub(super) fn with_dialect(&self, problems: Diagnostics, cmd: &Command) -> Diagnostics {
-        let unknown = |d: &Diagnostic| [Code::UNKNOWN_COMMAND, Code::UNKNOWN_STYLE].contains(&d.code);
+        let codes = [Code::UNKNOWN_COMMAND, Code::UNKNOWN_STYLE, Code::NOT_SUPPORTED];
+        let unknown = |d: &Diagnostic| codes.contains(&d.code);
         if !problems.0.iter().any(unknown) {
             return problems;
         }

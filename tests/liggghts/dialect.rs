@@ -87,14 +87,14 @@ fn translate_writes_a_deck_with_the_same_bits() {
     let there = tempfile::tempdir().unwrap();
     fs::write(
         there.path().join("in.falls"),
-        FALLS.replace("run 3000.0", "label a\nvariable n loop 3\nrun 1000 # once\nnext n\njump SELF b"),
+        FALLS.replace("run 3000.0", "label a\nvariable n loop 3\nrun 1000 # once\nnext n\njump SELF a"),
     )
     .unwrap();
     let out = perigrain(there.path(), &["translate", "in.falls", "-o", "in.native"]);
     assert!(out.status.success(), "{}", printed(&out));
     let new = fs::read_to_string(there.path().join("in.native")).unwrap();
     assert!(new.contains("# LIGGGHTS: atom_style granular\natom_style sphere\n"), "{new}");
-    assert!(new.contains("variable n loop 3\nrun 1000 # once\nnext n\n"), "{new}");
+    assert!(new.contains("variable n loop 3\n# LIGGGHTS: what lines above mean for a run\nthermo_modify lost ignore\nrun 1000 # once\nnext n\n"), "{new}");
     let both = ["in.falls", "in.native"].map(|deck| {
         let text = printed(&perigrain(there.path(), &["-in", deck, "-log", "none"]));
         rows(&text).into_iter().map(String::from).collect::<Vec<_>>()

@@ -16,7 +16,7 @@ const SOFTER: &str = "linear_history ratio 0.2857142857142857";
 impl Translator {
     /// `pair_style gran …`.
     pub(crate) fn pair_style(&mut self, cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
-        let asks = args.expect("the style")?.clone();
+        let reader = args.expect("the style")?.clone();
         let mut given = parts(args, &cmd.name)?;
         while let Some(word) = args.peek().cloned() {
             match switch(args, &mut given.model)? {
@@ -32,7 +32,7 @@ impl Translator {
         self.written = None;
         self.pair = Some((cmd.clone(), given));
         let mut line = Line::new(cmd, "pair_style");
-        line.say("granular", asks.span);
+        line.put("granular", reader.span);
         Ok(vec![line.done()])
     }
 
@@ -48,7 +48,7 @@ impl Translator {
         for i in 0..types {
             for j in i..types {
                 let mut line = Line::new(&cmd, "pair_coeff");
-                line.say(&format!("{} {}", i + 1, j + 1), cmd.name.span);
+                line.put(&format!("{} {}", i + 1, j + 1), cmd.name.span);
                 self.law(&mut line, &given, i, j)?;
                 lines.push(line.done());
             }
@@ -59,7 +59,7 @@ impl Translator {
 
     /// The law of a pair of atom types, counted from 0.
     pub(crate) fn law(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
-        let (model, asks) = (&given.model, &given.asks);
+        let (model, reader) = (&given.model, &given.reader);
         if model.is_stiffness() {
             self.springs(line, given, i, j)?;
         } else {
@@ -68,20 +68,20 @@ impl Translator {
         let at = given.rolling;
         let full = if model.torsion { " full" } else { "" };
         if model.rolling != Rolling::Off {
-            let mu = self.of("coefficientRollingFriction", asks, i, j)?;
+            let mu = self.of("coefficientRollingFriction", reader, i, j)?;
             let name = match model.rolling {
                 Rolling::Cdt => "cdt",
                 Rolling::Epsd2 => "epsd2",
                 _ => "epsd",
             };
-            line.say(&format!("rolling {name}"), at).word(&mu);
+            line.put(&format!("rolling {name}"), at).word(&mu);
             if matches!(model.rolling, Rolling::Epsd | Rolling::Epsd3) {
-                line.word(&self.of("coefficientRollingViscousDamping", asks, i, j)?);
+                line.word(&self.of("coefficientRollingViscousDamping", reader, i, j)?);
             }
             if model.rolling == Rolling::Epsd3 {
-                line.word(&self.of("rollingStiffness", asks, i, j)?);
+                line.word(&self.of("rollingStiffness", reader, i, j)?);
             }
-            line.say(full, at);
+            line.put(full, at);
         }
         let name = match model.cohesion {
             Cohesion::Off => None,
@@ -89,31 +89,31 @@ impl Translator {
             Cohesion::Sjkr2 => Some("cohesion sjkr2"),
         };
         if let Some(name) = name {
-            line.say(name, given.cohesion).word(&self.of("cohesionEnergyDensity", asks, i, j)?);
-            line.say(if model.reduce { "reduce" } else { "" }, given.cohesion);
+            line.put(name, given.cohesion).word(&self.of("cohesionEnergyDensity", reader, i, j)?);
+            line.put(if model.reduce { "reduce" } else { "" }, given.cohesion);
         }
-        line.say(if model.limit { "limit_damping" } else { "" }, given.normal);
+        line.put(if model.limit { "limit_damping" } else { "" }, given.normal);
         if i != j && !model.is_stiffness() {
-            let (e, nu) = (self.of("youngsModulus", asks, j, j)?, self.of("poissonsRatio", asks, j, j)?);
-            line.say("material", given.normal).word(&e).word(&nu);
+            let (e, nu) = (self.of("youngsModulus", reader, j, j)?, self.of("poissonsRatio", reader, j, j)?);
+            line.put("material", given.normal).word(&e).word(&nu);
         }
         Ok(())
     }
 
     /// Laws whose constants come from materials.
     fn material(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
-        let (model, asks, at) = (&given.model, &given.asks, given.normal);
-        let modulus = self.of("youngsModulus", asks, i, i)?;
-        let nu = self.of("poissonsRatio", asks, i, i)?;
-        let e = self.of("coefficientRestitution", asks, i, j)?;
+        let (model, reader, at) = (&given.model, &given.reader, given.normal);
+        let modulus = self.of("youngsModulus", reader, i, i)?;
+        let nu = self.of("poissonsRatio", reader, i, i)?;
+        let e = self.of("coefficientRestitution", reader, i, j)?;
         let name = match model.normal {
             Normal::Hertz => "hertz/material",
             Normal::Hysteresis => "hooke/hysteresis",
             _ => "hooke/velocity",
         };
-        line.say(name, at).word(&modulus).word(&e).word(&nu);
+        line.put(name, at).word(&modulus).word(&e).word(&nu);
         if model.normal != Normal::Hertz {
-            line.word(&self.of("characteristicVelocity", asks, i, j)?);
+            line.word(&self.of("characteristicVelocity", reader, i, j)?);
         }
         if model.normal == Normal::Hysteresis {
             for name in [
@@ -121,10 +121,10 @@ impl Translator {
                 "coefficientAdhesionStiffness",
                 "coefficientPlasticityDepth",
             ] {
-                line.word(&self.of(name, asks, i, j)?);
+                line.word(&self.of(name, reader, i, j)?);
             }
         }
-        line.say("damping coeff_restitution", at);
+        line.put("damping coeff_restitution", at);
         let (spring, drag) = match (model.is_hertz(), model.softer) {
             (true, _) => ("mindlin NULL", "NULL"),
             (false, false) => ("linear_history NULL", "NULL"),
@@ -145,14 +145,14 @@ impl Translator {
     ) -> Result<()> {
         let at = given.tangential;
         match given.model.tangential {
-            Tangential::Off => drop(line.say("tangential none", at)),
+            Tangential::Off => drop(line.put("tangential none", at)),
             Tangential::History => {
-                let mu = self.of("coefficientFriction", &given.asks, i, j)?;
-                line.say(&format!("tangential {spring} {damping}"), at).word(&mu).say("slip spring", at);
+                let mu = self.of("coefficientFriction", &given.reader, i, j)?;
+                line.put(&format!("tangential {spring} {damping}"), at).word(&mu).put("slip spring", at);
             }
             Tangential::NoHistory => {
-                let mu = self.of("coefficientFriction", &given.asks, i, j)?;
-                line.say(&format!("tangential linear_nohistory {damping}"), at).word(&mu);
+                let mu = self.of("coefficientFriction", &given.reader, i, j)?;
+                line.put(&format!("tangential linear_nohistory {damping}"), at).word(&mu);
             }
         }
         Ok(())
@@ -160,10 +160,10 @@ impl Translator {
 
     /// Laws whose constants are those of springs and dampers: kn, kt, gamman, gammat.
     fn springs(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
-        let (model, asks, at) = (&given.model, &given.asks, given.normal);
+        let (model, reader, at) = (&given.model, &given.reader, given.normal);
         let names = if model.absolute { ["gamman_abs", "gammat_abs"] } else { ["gamman", "gammat"] };
-        let [kn, kt] = [self.of("kn", asks, i, j)?, self.of("kt", asks, i, j)?];
-        let [normal, across] = [self.of(names[0], asks, i, j)?, self.of(names[1], asks, i, j)?];
+        let [kn, kt] = [self.of("kn", reader, i, j)?, self.of("kt", reader, i, j)?];
+        let [normal, across] = [self.of(names[0], reader, i, j)?, self.of(names[1], reader, i, j)?];
         let across = if model.undamped { instead(&across, "0") } else { across };
         let (normal, ratio) = ratio(&normal, &across);
         let (name, damping) = match (model.is_hertz(), model.absolute) {
@@ -171,7 +171,7 @@ impl Translator {
             (false, true) => ("hooke", "velocity"),
             (false, false) => ("hooke", "mass_velocity"),
         };
-        line.say(name, at).word(&kn).word(&normal).say(&format!("damping {damping}"), at);
+        line.put(name, at).word(&kn).word(&normal).put(&format!("damping {damping}"), at);
         let kind = if model.is_hertz() { "mindlin" } else { "linear_history" };
         self.friction(line, given, &format!("{kind} {}", kt.text), &ratio, (i, j))
     }

@@ -2,7 +2,7 @@
 
 use crate::Translator;
 use crate::native::Line;
-use crate::reading::{number, rounded};
+use crate::reading::{number, rounded, without_counterpart};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -16,6 +16,10 @@ pub(crate) fn custom(cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
     line.word(args.expect("a file name")?);
     let mut seen = std::collections::BTreeSet::new();
     while let Some(word) = args.next() {
+        if ["p", "rho"].contains(&word.text.as_str()) {
+            let help = "grains and solids alone are computed here";
+            return Err(without_counterpart(word, "a fluid of particles", help).into());
+        }
         if seen.insert(word.text.clone()) {
             line.word(word);
         }
@@ -29,7 +33,7 @@ pub(crate) fn modified(cmd: &Command) -> Option<Vec<Command>> {
         |k: usize| cmd.args[k].text == "format" && cmd.args.get(k + 1).is_some_and(|w| w.text.contains('%'));
     let at = (0..cmd.args.len()).find(|k| old(*k))?;
     let mut line = Line::new(cmd, "dump_modify");
-    line.words(&cmd.args[..=at]).say("line", cmd.args[at].span).words(&cmd.args[at + 1..]);
+    line.words(&cmd.args[..=at]).put("line", cmd.args[at].span).words(&cmd.args[at + 1..]);
     Some(vec![line.done()])
 }
 
@@ -54,7 +58,7 @@ impl Translator {
         }
         if names == 0 {
             let ids: Vec<&str> = self.surfaces.keys().map(String::as_str).collect();
-            line.say(&ids.join(" "), cmd.args[2].span);
+            line.put(&ids.join(" "), cmd.args[2].span);
         }
         Ok(Some(vec![line.done()]))
     }

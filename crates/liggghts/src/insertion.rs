@@ -84,7 +84,7 @@ impl Translator {
             return lacks(cmd, if form == "pack" { "particles_in_region N" } else { "nparticles N" });
         }
         let mut line = Line::styled(cmd, "insert");
-        line.word(mixture).say(form, cmd.args[2].span);
+        line.word(mixture).put(form, cmd.args[2].span);
         for words in [
             &parts.place,
             &parts.amount,

@@ -1,7 +1,7 @@
 //! Decks of LIGGGHTS: each line becomes native lines, whose words keep their places.
 //!
 //! A [`Translator`] reads a deck line by line. It holds what LIGGGHTS keeps in fixes and the native language in lines: properties of
-//! materials, templates of grains, their mixtures, surfaces. The physics is native; this crate knows words alone.
+//! materials, templates of grains, their mixtures, surfaces. The physics is native; this crate deals with words alone.
 //!
 //! Source: the manual of LIGGGHTS-PUBLIC 3.8.0; what it leaves open was measured with that program.
 
@@ -164,7 +164,7 @@ impl Translator {
         let mut lines = self.coefficients()?;
         if !std::mem::replace(&mut self.lost, true) && cmd.name.text != "write_data" {
             let mut line = native::Line::new(cmd, "thermo_modify");
-            line.say("lost ignore", cmd.name.span);
+            line.put("lost ignore", cmd.name.span);
             lines.push(line.done());
         }
         Ok(lines)

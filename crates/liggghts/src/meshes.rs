@@ -80,7 +80,7 @@ impl Translator {
         let (mut file, mut kind, mut wear) = (None, None, None);
         let (mut first, mut then, mut servo) = (vec![], vec![], vec![]);
         while let Some(word) = args.next() {
-            let say = |text: &str, list: &mut Vec<Word>| list.push(Word::new(text, word.span));
+            let put = |text: &str, list: &mut Vec<Word>| list.push(Word::new(text, word.span));
             match word.text.as_str() {
                 "file" => file = Some(args.expect("a file name")?.clone()),
                 "type" => {
@@ -89,26 +89,26 @@ impl Translator {
                     kind = Some(word);
                 }
                 "scale" => {
-                    say("scale", &mut first);
+                    put("scale", &mut first);
                     first.push(number(args, "the factor")?);
                 }
                 "move" => {
-                    say("shift", &mut first);
+                    put("shift", &mut first);
                     first.extend(vector(args, "a component of the shift")?);
                 }
                 "rotate" => {
-                    say("turn", &mut first);
+                    put("turn", &mut first);
                     choice(args, "word of `rotate`", &["axis"])?;
                     first.extend(vector(args, "a component of the axis")?);
                     choice(args, "word of `rotate`", &["angle"])?;
                     first.push(number(args, "the angle")?);
                 }
                 "surface_vel" => {
-                    say("speed", &mut then);
+                    put("speed", &mut then);
                     then.extend(vector(args, "a component of the velocity")?);
                 }
                 "surface_ang_vel" => {
-                    say("spin", &mut then);
+                    put("spin", &mut then);
                     choice(args, "word of `surface_ang_vel`", &["origin"])?;
                     then.extend(vector(args, "a component of the origin")?);
                     choice(args, "word of `surface_ang_vel`", &["axis"])?;
@@ -117,11 +117,11 @@ impl Translator {
                     then.push(number(args, "the angular velocity")?);
                 }
                 "temperature" => {
-                    say("temperature", &mut then);
+                    put("temperature", &mut then);
                     then.push(number(args, "the temperature")?);
                 }
                 "reference_point" => {
-                    say("about", &mut then);
+                    put("about", &mut then);
                     then.extend(vector(args, "a component of the point")?);
                 }
                 "wear" if choice(args, "model of wear", &["finnie", "off"])? == "finnie" => {
@@ -129,10 +129,10 @@ impl Translator {
                 }
                 "wear" => {}
                 "dim" => {
-                    say("axis", &mut servo);
+                    put("axis", &mut servo);
                     let axis = choice(args, "direction", &["x", "y", "z"])?;
                     for along in ["x", "y", "z"] {
-                        say(if axis == along { "1" } else { "0" }, &mut servo);
+                        put(if axis == along { "1" } else { "0" }, &mut servo);
                     }
                 }
                 other => {
@@ -162,21 +162,21 @@ impl Translator {
         let Some(file) = file else { return lacks("file FILE") };
         let Some(kind) = kind else { return lacks("type T") };
         let mut line = Line::styled(cmd, "surface");
-        line.word(&file).say("type", kind.span).word(&kind).words(&first).words(&then);
+        line.word(&file).put("type", kind.span).word(&kind).words(&first).words(&then);
         if let Some(word) = &wear {
-            line.say("wear finnie", word.span).words(&self.wear(word, &kind)?);
+            line.put("wear finnie", word.span).words(&self.wear(word, &kind)?);
         }
         if !servo.is_empty() {
-            line.say("servo", servo[0].span).words(&servo);
+            line.put("servo", servo[0].span).words(&servo);
         }
         self.surfaces.insert(cmd.args[0].text.clone(), Surface { kind });
         Ok(Some(vec![line.done()]))
     }
 
     /// Finnie's coefficient of grains of each type on the surface; one number where all have the same.
-    fn wear(&mut self, asks: &Word, kind: &Word) -> Result<Vec<Word>> {
+    fn wear(&mut self, reader: &Word, kind: &Word) -> Result<Vec<Word>> {
         let on = kind.text.parse::<usize>().unwrap_or(1).max(1) - 1;
-        let each = (0..self.types().max(1)).map(|i| self.of("k_finnie", asks, i, on));
+        let each = (0..self.types().max(1)).map(|i| self.of("k_finnie", reader, i, on));
         let mut each: Vec<Word> = each.collect::<Result<_>>()?;
         if each.iter().all(|word| word.text == each[0].text) {
             each.truncate(1);

@@ -63,7 +63,7 @@ impl Translator {
         let count = number(args, "the number of templates")?;
         let wanted = value(&rounded(&count).0).map_or(0, |n| n as usize);
         let mut line = Line::new(cmd, "mixture");
-        line.word(&cmd.args[0]).say(by, cmd.args[2].span).word(&seed);
+        line.word(&cmd.args[0]).put(by, cmd.args[2].span).word(&seed);
         let mut found = 0;
         while let Some(word) = args.next() {
             let Some(template) = self.templates.get(&word.text) else {
@@ -72,7 +72,7 @@ impl Translator {
                 let near = nearest(&word.text, self.templates.keys().map(String::as_str));
                 return Err(near.into_iter().fold(d, |d, n| d.help(format!("did you mean `{n}`?"))).into());
             };
-            line.say("sphere", word.span).word(&template.kind).word(&twice(&template.radius));
+            line.put("sphere", word.span).word(&template.kind).word(&twice(&template.radius));
             line.word(&template.density);
             line.word(&number(args, "the share of the template")?);
             found += 1;

@@ -70,7 +70,7 @@ pub(crate) struct Model {
 pub(crate) struct Given {
     pub model: Model,
     /// `pair_style`, or the style of a wall.
-    pub asks: Word,
+    pub reader: Word,
     pub normal: Span,
     pub tangential: Span,
     pub cohesion: Span,
@@ -104,8 +104,8 @@ const REFUSED: &[(&str, &str, &str)] = &[
     ("edinburgh", "a law of a fork of LIGGGHTS", "`model hooke/hysteresis` is the nearest one"),
     ("thorn_ning", "a law of a fork of LIGGGHTS", "native lines: `pair_coeff * * mdr …`"),
     ("bond", "a law of a fork of LIGGGHTS", "`bond_style bpm/beam` joins grains"),
-    ("easo/capillary/viscous", "liquid bridges", "native lines: `pair_coeff * * dmt …` pulls"),
-    ("washino/capillary/viscous", "liquid bridges", "native lines: `pair_coeff * * dmt …` pulls"),
+    ("easo/capillary/viscous", "liquid bridges", "native lines: `pair_coeff … cohesion capillary …`"),
+    ("washino/capillary/viscous", "liquid bridges", "native lines: `pair_coeff … cohesion capillary …`"),
     ("viscous", "a damping by viscosity of a fluid", "`model hertz` with coefficientRestitution"),
     ("multicontact", "a law that is not pairwise", "`surface default` leaves it out"),
     ("superquadric", "a shape that is no sphere", "clumps of spheres: `molecule` and `fix rigid/small`"),
@@ -130,7 +130,7 @@ const SWITCHES: &[&str] = &[
     "disableNormalWhenBonded",
 ];
 
-/// The heads of a model's parts, in the order that LIGGGHTS wants.
+/// The heads of a model's parts, in the order of LIGGGHTS.
 pub(crate) const PARTS: [&str; 5] = ["model", "tangential", "cohesion", "rolling_friction", "surface"];
 
 impl Model {
@@ -159,12 +159,12 @@ fn of<T: Copy>(args: &mut Args, what: &str, table: &[(&str, T)]) -> Result<T> {
 }
 
 /// Reads the parts of a model, up to a word that is none.
-pub(crate) fn parts(args: &mut Args, asks: &Word) -> Result<Given> {
+pub(crate) fn parts(args: &mut Args, reader: &Word) -> Result<Given> {
     let mut model = Model::default();
-    let at = asks.span;
+    let at = reader.span;
     let mut given = Given {
         model: model.clone(),
-        asks: asks.clone(),
+        reader: reader.clone(),
         normal: at,
         tangential: at,
         cohesion: at,

@@ -21,12 +21,12 @@ impl Line {
         let mut line = Self::new(cmd, &cmd.name.text);
         line.args.extend(cmd.args.iter().take(2).cloned());
         let at = cmd.args.get(2).map_or(cmd.span, |w| w.span);
-        line.say(style, at);
+        line.put(style, at);
         line
     }
 
     /// Adds words of its own, which stand for what is at `at`.
-    pub fn say(&mut self, words: &str, at: Span) -> &mut Self {
+    pub fn put(&mut self, words: &str, at: Span) -> &mut Self {
         self.args.extend(words.split_whitespace().map(|text| Word::new(text, at)));
         self
     }

@@ -26,7 +26,7 @@ impl Translator {
         first.text.parse::<f64>().ok()?;
         let law = self.old_pair?;
         let mut line = Line::styled(cmd, "wall/gran");
-        line.say(law, first.span).words(&cmd.args[3..]);
+        line.put(law, first.span).words(&cmd.args[3..]);
         Some(vec![line.done()])
     }
 }
@@ -38,7 +38,7 @@ pub(crate) fn pour(cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>
     while let Some(word) = args.next() {
         line.word(word);
         if word.text == "diam" && args.peek().is_some_and(|w| w.text.parse::<f64>().is_ok()) {
-            line.say("range", word.span);
+            line.put("range", word.span);
             changed = true;
         }
     }

@@ -86,7 +86,7 @@ impl Translator {
             let text = format!("property `{}` is given as {}", name.text, wanted.word());
             return Err(Diagnostic::error(Code::BAD_VALUE, name.span, text).into());
         }
-        let mut types = 1;
+        let mut types: usize = 1;
         if shape == Shape::Pairs {
             let (word, note) = rounded(&number(args, "the number of atom types")?);
             self.notes.0.extend(note);
@@ -96,7 +96,7 @@ impl Translator {
         while !args.is_empty() {
             values.push(number(args, "a value of the property")?);
         }
-        let wanted = if shape == Shape::Pairs { types * types } else { values.len().max(1) };
+        let wanted = if shape == Shape::Pairs { types.saturating_mul(types) } else { values.len().max(1) };
         let wanted = if shape == Shape::Scalar { 1 } else { wanted };
         if values.len() != wanted {
             let text = format!("`{}` wants {wanted} values and has {}", name.text, values.len());
@@ -121,11 +121,11 @@ impl Translator {
     /// The value of a property for a pair of atom types, counted from 0.
     ///
     /// # Errors
-    /// A property that is not there, with the line to write; too few values. `asks` is the word that needs it.
-    pub(crate) fn of(&mut self, name: &str, asks: &Word, i: usize, j: usize) -> Result<Word> {
+    /// A property that is not there, with the line to write; too few values. `reader` is the word that needs it.
+    pub(crate) fn of(&mut self, name: &str, reader: &Word, i: usize, j: usize) -> Result<Word> {
         let types = self.types();
         let Some(property) = self.properties.get_mut(name) else {
-            return Err(missing(name, asks, types.max(1)));
+            return Err(missing(name, reader, types.max(1)));
         };
         property.read = true;
         let k = match property.shape {
@@ -139,7 +139,7 @@ impl Translator {
             None => {
                 let text = format!("property `{name}` has no value for atom type {}", i.max(j) + 1);
                 let d = Diagnostic::error(Code::INCOMPLETE, property.span, text);
-                Err(d.label(asks.span, "read here").into())
+                Err(d.label(reader.span, "read here").into())
             }
         }
     }
@@ -173,15 +173,17 @@ impl Translator {
 }
 
 /// The error for a property that a model wants, with the line that defines it.
-fn missing(name: &str, asks: &Word, types: usize) -> perigrain_base::diag::Diagnostics {
+fn missing(name: &str, reader: &Word, types: usize) -> perigrain_base::diag::Diagnostics {
     let shape = PROPERTIES.iter().find(|(known, _)| *known == name).map_or(Shape::Scalar, |(_, s)| *s);
+    // A line that can be read.
+    let types = types.min(4);
     let values = match shape {
         Shape::Scalar => " X".to_string(),
         Shape::Types => " X".repeat(types),
         Shape::Pairs => format!(" {types}{}", " X".repeat(types * types)),
     };
-    let text = format!("`{}` needs property `{name}`, which no line above defines", asks.text);
-    Diagnostic::error(Code::INCOMPLETE, asks.span, text)
+    let text = format!("`{}` needs property `{name}`, which no line above defines", reader.text);
+    Diagnostic::error(Code::INCOMPLETE, reader.span, text)
         .help(format!("write `fix ID all property/global {name} {}{values}`", shape.word()))
         .into()
 }
@@ -225,6 +227,6 @@ pub(crate) fn atom_property(cmd: &Command, args: &mut Args) -> Result<Option<Com
         return Err(without_counterpart(&name, "a property with several values", help).into());
     }
     let mut line = crate::native::Line::styled(cmd, "property/atom");
-    line.say(&format!("d_{}", name.text), name.span);
+    line.put(&format!("d_{}", name.text), name.span);
     Ok(Some(line.done()))
 }

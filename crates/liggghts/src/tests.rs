@@ -274,7 +274,7 @@ fn insertions_keep_their_amounts() {
 }
 
 #[test]
-fn grains_that_leave_the_box_are_deleted_unless_the_deck_says_otherwise() {
+fn grains_that_leave_the_box_are_deleted_unless_a_line_forbids_it() {
     let text = |deck: &str| rewrite(deck, FileId(0), Target::Perigrain).text;
     let once = text("atom_style granular\nrun 1\nrun 1\n");
     assert_eq!(once.matches(LOST).count(), 1);
@@ -340,4 +340,33 @@ fn other_decks_have_no_mark() {
     // `compat none` forbids what would be recognised below it.
     let forbidden = format!("compat none\n{MATERIAL}");
     assert_eq!(rewrite(&forbidden, FileId(0), Target::Perigrain).text, forbidden);
+}
+
+#[test]
+fn lammps_has_numbers_in_the_place_of_null_and_lacks_the_rest() {
+    let deck = "atom_style granular
+fix m1 all property/global youngsModulus peratomtype 5e6 5e7
+fix m2 all property/global poissonsRatio peratomtype 0.45 0.3
+fix m3 all property/global coefficientRestitution peratomtypepair 2 0.7 0.5 0.5 0.7
+fix m4 all property/global coefficientFriction peratomtypepair 2 0.5 0.5 0.5 0.5
+pair_style gran model hertz tangential no_history
+fix c all mesh/surface file a.stl type 1
+run 1
+";
+    let out = rewrite(deck, FileId(0), Target::Lammps);
+    assert_eq!(out.lost, 1, "{}", out.text);
+    assert!(
+        out.text
+            .contains("# NOT IN LAMMPS: fix c all surface a.stl type 1 (LAMMPS has no walls of triangles)")
+    );
+    let line = out.text.lines().find(|l| l.starts_with("pair_coeff 1 2")).unwrap();
+    let number = |k: usize| line.split_whitespace().nth(k).unwrap().parse::<f64>().unwrap();
+    // E* and G* of the two materials from the line's one, by the formulas of two like bodies.
+    let (young, nu) = (number(4), number(6));
+    let young_star = 1.0 / ((1.0 - 0.45_f64.powi(2)) / 5e6 + (1.0 - 0.09) / 5e7);
+    let shear_star = 1.0 / (2.0 * 1.55 * 1.45 / 5e6 + 2.0 * 1.7 * 1.3 / 5e7);
+    assert!((young / (2.0 * (1.0 - nu * nu)) / young_star - 1.0).abs() < 1e-12);
+    assert!((young / (4.0 * (2.0 - nu) * (1.0 + nu)) / shear_star - 1.0).abs() < 1e-12);
+    // x_gamma = 2 sqrt(G*/E*).
+    assert!((number(11) / (2.0 * (shear_star / young_star).sqrt()) - 1.0).abs() < 1e-12, "{line}");
 }

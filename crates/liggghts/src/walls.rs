@@ -143,16 +143,16 @@ impl Translator {
         if !narrower {
             return self.own_law(line, given, place);
         }
-        line.say("coeff", at).word(&place.kind);
+        line.put("coeff", at).word(&place.kind);
         if of_pair.as_ref() != Some(&given.model) {
-            line.say("only normal damping", at);
+            line.put("only normal damping", at);
             let model = &given.model;
             for (has, name, at) in [
                 (model.tangential != Tangential::Off, "tangential", given.tangential),
                 (model.rolling != Rolling::Off, "rolling", given.rolling),
                 (model.cohesion != Cohesion::Off, "cohesion", given.cohesion),
             ] {
-                line.say(if has { name } else { "" }, at);
+                line.put(if has { name } else { "" }, at);
             }
         }
         Ok(())
@@ -162,14 +162,14 @@ impl Translator {
     fn own_law(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let alone = self.types() == 1 && place.kind.text == "1";
         if !alone || place.on_mesh {
-            let asks = &given.asks;
+            let reader = &given.reader;
             let text = "the model of this wall has what the model of `pair_style` does not have";
-            let d = blame(asks, Code::NO_COUNTERPART, text);
+            let d = blame(reader, Code::NO_COUNTERPART, text);
             return Err(d
                 .help("a wall may leave parts of that model out: write the larger one there")
                 .into());
         }
-        line.say("granular", given.normal);
+        line.put("granular", given.normal);
         self.law(line, given, 0, 0)
     }
 }

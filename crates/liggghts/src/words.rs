@@ -36,7 +36,7 @@ const fn entry(command: &'static str, style: &'static str, mark: bool, take: Tak
 
 const SHAPES: &str = "clumps of spheres: `molecule` and `fix rigid/small`";
 const PARTNER: &str = "`fix external` and the Python module couple another program";
-const FLUID: &str = "`pair_style` and `fix` here know grains and solids, no fluid";
+const FLUID: &str = "grains and solids are computed here, no fluid";
 
 /// All of them, by command.
 pub(crate) const TABLE: &[Entry] = &[
