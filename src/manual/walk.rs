@@ -260,7 +260,7 @@ impl Walk<'_> {
                 let word = self.typed[self.at];
                 self.at += 1;
                 match all.iter().find(|a| a.word == word) {
-                    Some(one) => self.along(&one.parts.iter().collect::<Vec<_>>()),
+                    Some(one) => self.alternative(one.parts),
                     None => {
                         self.strays.push(self.at - 1);
                         true
@@ -276,6 +276,16 @@ impl Walk<'_> {
                 self.at += 1;
                 true
             }
+        }
+    }
+
+    /// The parts of a word that is one of several; the keywords of a declaration that ends them stand behind it.
+    fn alternative(&mut self, parts: &'static [Part]) -> bool {
+        match parts {
+            [before @ .., Part::All(grammar)] => {
+                self.along(&before.iter().collect::<Vec<_>>()) && self.nested(grammar)
+            }
+            _ => self.along(&parts.iter().collect::<Vec<_>>()),
         }
     }
 

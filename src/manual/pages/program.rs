@@ -33,7 +33,7 @@ pub(super) const PERIGRAIN: Entry = (
             perigrain check in.plate\n\
             perigrain check --json in.plate\n\
             perigrain fmt --diff in.plate\n\
-            perigrain translate in.conveyor -o in.native\n\
+            perigrain translate in.grains -o in.native\n\
             perigrain plan in.plate --measure\n\
             perigrain plan --dot in.plate\n\
             perigrain -in in.plate -screen none -threads 2 -compat lammps\n\
