@@ -8,7 +8,7 @@ pub(super) const LIGGGHTS: Entry = (
     "liggghts",
     Doc {
         syntax: Syntax::Written(
-            "perigrain DECK\n\
+            "perigrain DECK [-compat liggghts]\n\
             perigrain translate IN [-o OUT] [-to perigrain|lammps]",
         ),
         summary: "Decks of LIGGGHTS: recognised by their words, read as native lines, rewritten on request.",
