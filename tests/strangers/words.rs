@@ -257,9 +257,9 @@ fn words_of_lammps_lead_on() {
             "write the force first: `granular hertz/material",
         ),
     ] {
-        // Words of LIGGGHTS are read as such unless the deck says that it has none.
-        let first = if message.contains("LIGGGHTS") { "compat none\n" } else { "" };
-        let printed = check(&format!("{first}{SCENE}{line}\n"));
+        // By itself the first word of LIGGGHTS makes a deck one of LIGGGHTS.
+        let compat = if message.starts_with("LIGGGHTS") { "compat none\n" } else { "" };
+        let printed = check(&format!("{compat}{SCENE}{line}\n"));
         assert!(printed.contains(message) && printed.contains(help), "{line}: {printed}");
         assert_eq!(lines(&printed, "error"), 1, "{line}: {printed}");
     }

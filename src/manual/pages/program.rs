@@ -90,7 +90,6 @@ const TEXT: &str = "`perigrain DECK` (or `perigrain run DECK`) runs a deck. The 
     - `-report FILE`: writes what the run was as one web page, see [Look at a run](../howto/report.md); the file is opened before the run begins;\n\
     - `-view [PORT]`: shows the run in a browser on this machine while it runs, at the address that it prints; with pause, step and stop;\n\
     - `-compat lammps[/2025|/2026]`: LAMMPS' numbers also where LAMMPS is wrong, see [Coming from LAMMPS](../coming-from-lammps.md), and of which version (without one the newest, 2026; `lammps/2025` is LAMMPS 22Jul2025);\n\
-    - `-compat liggghts`: the words of LIGGGHTS, see [Coming from LIGGGHTS](../coming-from-liggghts.md); a deck that has some is recognised without;\n\
     - `-compat liggghts`: the deck has the words of [LIGGGHTS](liggghts.md), from its first line on;\n\
     - `-ranks N`: N processes of this machine run the deck together, as `mpirun -n N perigrain -in DECK` does with any MPI on one machine or several (`perigrain ranks` says which library \
     connects them, and how fast); results are the same bits for any N, files are written by the first rank. `sweep`, `bench` and `-partition` share their runs out to ranks instead;\n\
