@@ -37,8 +37,8 @@ tutorials! {
 /// Tutorials that cannot be run here, with a word of the one error.
 const REFUSED: &[(&str, &str, &str)] = &[
     ("superquadric", "in.particle_particle", "superquadric"),
-    ("sph_1", "in.sph_1", "a fluid of particles"),
-    ("sph_2", "in.sph_2", "a fluid of particles"),
+    ("sph_1", "in.sph_1", "fluids are not in perigrain"),
+    ("sph_2", "in.sph_2", "fluids are not in perigrain"),
     ("hydrogel_multicontact", "in.hydrogel_multicontact", "multicontact"),
 ];
 

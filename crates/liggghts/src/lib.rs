@@ -83,13 +83,8 @@ pub fn mark(cmd: &Command) -> Option<String> {
     if !find(cmd).is_some_and(|e| e.mark) {
         return None;
     }
-    Some(if style.is_empty() || style_at(command) == 0 && command.ends_with("_particles") {
-        command.to_string()
-    } else if command == "communicate" {
-        command.to_string()
-    } else {
-        format!("{command} {style}")
-    })
+    let bare = style.is_empty() || command == "communicate" || command.ends_with("_particles");
+    Some(if bare { command.to_string() } else { format!("{command} {style}") })
 }
 
 impl Translator {
