@@ -179,8 +179,11 @@ fn compare(name: &str, expect: Expect) -> Result<(), String> {
     surfaces(name, &golden, there.path(), tolerance)
 }
 
+/// A row that was written, and the golden one.
+type Pair<'g> = (Vec<f64>, &'g Vec<f64>);
+
 /// The rows of the step table beside those of LIGGGHTS, without those of setups: there LIGGGHTS has zeros for forces on surfaces.
-fn pairs<'g>(golden: &'g [Vec<f64>], text: &str) -> Result<Vec<(Vec<f64>, &'g Vec<f64>)>, String> {
+fn pairs<'g>(golden: &'g [Vec<f64>], text: &str) -> Result<Vec<Pair<'g>>, String> {
     let Some(first) = golden.first() else { return Ok(vec![]) };
     let ours = text.lines().filter_map(reading::numbers).filter(|row| row.len() == first.len());
     let ours: Vec<Vec<f64>> = ours.collect();
