@@ -149,7 +149,12 @@ fn spheres_on_a_wall_follow_the_branches_one_by_one_and_together() {
                 let grains =
                     Spheres { x: &x, v: &still, omega: &still, radius: &radius, mass: &radius, tag: &tag };
                 let all = 0..count;
-                let which = Meeting { mask: &vec![1; count], group: 1, rows: std::slice::from_ref(&all) };
+                let which = Meeting {
+                    mask: &vec![1; count],
+                    group: 1,
+                    rows: std::slice::from_ref(&all),
+                    kinds: None,
+                };
                 sweep.list(&floor, &grains, &which, &law, 0.001);
                 sweep.run(&floor, &grains, &law, &mut memory, STEP);
                 let force = exact.force(RADII[0] - height);
