@@ -7,6 +7,7 @@
 
 mod coefficients;
 mod computes;
+mod contacts;
 mod dumps;
 mod idle;
 mod insertion;

@@ -202,9 +202,18 @@ impl Translator {
         self.named_mesh(args)
     }
 
-    /// `fix ID group massflow/mesh mesh MESH …`: the native words are the same.
-    pub(crate) fn mass_flow(&mut self, _: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
-        self.named_mesh(args)
+    /// `fix ID group massflow/mesh mesh MESH …`: the native words are the same, but for files of grains and the screen.
+    pub(crate) fn mass_flow(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        let lines = self.named_mesh(args)?;
+        if let Some(word) = args.rest().iter().find(|word| ["file", "append"].contains(&word.text.as_str())) {
+            let help = "`fix print` or `fix ave/time` with f_ID[1] and f_ID[2], the mass and number that have passed";
+            return Err(without_counterpart(word, "a file of the grains that pass", help).into());
+        }
+        let Some(at) = cmd.args.iter().position(|word| word.text == "screen") else { return Ok(lines) };
+        // Nothing is written to the screen but rows of the step table.
+        let mut line = Line::new(cmd, &cmd.name.text);
+        line.words(&cmd.args[..at]).words(cmd.args.get(at + 2..).unwrap_or_default());
+        Ok(Some(vec![line.done()]))
     }
 
     /// Looks at the mesh that a line names.

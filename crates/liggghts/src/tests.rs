@@ -370,3 +370,37 @@ run 1
     // x_gamma = 2 sqrt(G*/E*).
     assert!((number(11) / (2.0 * (shear_star / young_star).sqrt()) - 1.0).abs() < 1e-12, "{line}");
 }
+
+#[test]
+fn mass_flow_writes_no_file_and_nothing_to_the_screen() {
+    let mesh = "fix m all mesh/surface file m.stl type 1\n";
+    let lines =
+        behind(&format!("{mesh}fix f all massflow/mesh mesh m vec_side 0 0 1 screen yes count once\n"));
+    assert_eq!(lines.last().unwrap(), "fix f all massflow/mesh mesh m vec_side 0 0 1 count once");
+    let d = wrong(&format!("{mesh}fix f all massflow/mesh mesh m vec_side 0 0 1 file f.txt writeTime\n"))
+        .to_string();
+    assert!(d.contains("a file of the grains that pass"), "{d}");
+}
+
+/// Columns stand in LIGGGHTS' order, whatever that of the keywords; the manual's words of 2014 get what LAMMPS added since.
+#[test]
+fn tables_of_contacts_and_older_computes() {
+    let of = |line: &str, rolling: &str| {
+        let lines = behind(&format!("pair_style gran model hertz tangential history{rolling}\n{line}\n"));
+        lines.last().unwrap().clone()
+    };
+    assert_eq!(
+        of("compute c all pair/gran/local contactArea id delta force", ""),
+        "compute c all pair/local id1 id2 crosses forcex forcey forcez area delta cutoff radius"
+    );
+    let all = of("compute c all pair/gran/local", " rolling_friction epsd2");
+    // 25 numbers with three of history, three more for the torque of the rolling spring.
+    assert_eq!(all.split_whitespace().count(), 4 + 28 + 2, "{all}");
+    assert!(all.contains(" h1 h2 h3 h4 h5 h6 area cutoff"), "{all}");
+    assert_eq!(of("compute 2 all erotate", ""), "compute 2 all erotate/sphere");
+    assert_eq!(of("compute s all stress/atom virial", ""), "compute s all stress/atom NULL virial");
+    assert_eq!(of("compute s all stress/atom", ""), "compute s all stress/atom NULL");
+    assert_eq!(of("compute s all stress/atom NULL pair", ""), "compute s all stress/atom NULL pair");
+    let d = wrong("compute c all pair/gran/local ids\n").to_string();
+    assert!(d.contains("ids"), "{d}");
+}

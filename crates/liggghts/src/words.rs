@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, dumps, idle, old, properties};
+use crate::{Translator, computes, contacts, dumps, idle, old, properties};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -199,12 +199,9 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
     ),
-    entry(
-        "compute",
-        "pair/gran/local",
-        false,
-        Take::Refused("a table of contacts", "`compute pair/local dist force …`, or `contacts` of walls"),
-    ),
+    entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
+    entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
+    entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
     entry(
         "compute",
         "wall/gran/local",

@@ -1,0 +1,89 @@
+//! Computes of LIGGGHTS: tables of contacts, energies of rotation, stress without the word for the temperature.
+
+use crate::Translator;
+use crate::model::{Rolling, Tangential};
+use crate::native::{Line, instead};
+use crate::reading::unknown;
+use perigrain_base::diag::Result;
+use perigrain_lang::{Args, Command};
+
+/// Keywords of `compute pair/gran/local` with the columns of `compute pair/local`, in the order in which LIGGGHTS writes them whatever the order of the
+/// keywords (measured: delta behind contactArea), and whether they are there without keywords.
+const COLUMNS: &[(&str, &str, bool)] = &[
+    ("pos", "x1 y1 z1 x2 y2 z2", true),
+    ("vel", "vx1 vy1 vz1 vx2 vy2 vz2", true),
+    ("id", "id1 id2 crosses", true),
+    ("force", "forcex forcey forcez", true),
+    ("force_normal", "fx fy fz", false),
+    ("force_tangential", "p1 p2 p3", false),
+    ("torque", "torquex torquey torquez", true),
+    ("history", "", true),
+    ("contactArea", "area", true),
+    ("delta", "delta", false),
+    ("heatFlux", "p13", false),
+    ("contactPoint", "cx cy cz", false),
+];
+
+/// Keywords of `compute stress/atom` of LAMMPS ten years ago, where no temperature stood before them.
+const STRESSES: &[&str] = &["ke", "pair", "bond", "angle", "dihedral", "improper", "kspace", "fix", "virial"];
+
+impl Translator {
+    /// `compute ID group pair/gran/local [keywords]`.
+    pub(crate) fn contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        let asked = args.rest().to_vec();
+        let known: Vec<&str> = COLUMNS.iter().map(|(word, ..)| *word).collect();
+        if let Some(word) = asked.iter().find(|word| !known.contains(&word.text.as_str())) {
+            return Err(unknown(word, "keyword of compute pair/gran/local", &known).into());
+        }
+        let mut line = Line::styled(cmd, "pair/local");
+        for (word, columns, usual) in COLUMNS {
+            let given = asked.iter().find(|a| a.text == *word);
+            if given.is_none() && !(asked.is_empty() && *usual) {
+                continue;
+            }
+            let at = given.map_or(cmd.span, |a| a.span);
+            match *word {
+                "history" => {
+                    for k in 1..=self.remembered() {
+                        line.put(&format!("h{k}"), at);
+                    }
+                }
+                _ => {
+                    line.put(columns, at);
+                }
+            }
+        }
+        line.put("cutoff radius", cmd.span);
+        Ok(Some(vec![line.done()]))
+    }
+
+    /// How many numbers a contact remembers: the tangential spring, the torque of a rolling spring.
+    fn remembered(&self) -> usize {
+        let Some((_, given)) = &self.pair else { return 3 };
+        let slides = if given.model.tangential == Tangential::History { 3 } else { 0 };
+        let rolls = match given.model.rolling {
+            Rolling::Off | Rolling::Cdt => 0,
+            _ => 3,
+        };
+        slides + rolls
+    }
+}
+
+/// `compute ID group erotate`: of spheres.
+pub(crate) fn rotation(cmd: &Command) -> Vec<Command> {
+    let mut line = Line::styled(cmd, "erotate/sphere");
+    line.words(cmd.args.get(3..).unwrap_or_default());
+    vec![line.done()]
+}
+
+/// `compute ID group stress/atom [keywords]` without the word for the temperature: NULL.
+pub(crate) fn stress(cmd: &Command) -> Option<Vec<Command>> {
+    let first = cmd.args.get(3);
+    if first.is_some_and(|word| !STRESSES.contains(&word.text.as_str())) {
+        return None;
+    }
+    let mut line = Line::styled(cmd, "stress/atom");
+    let style = cmd.args.get(2)?;
+    line.word(&instead(style, "NULL")).words(cmd.args.get(3..).unwrap_or_default());
+    Some(vec![line.done()])
+}
