@@ -169,7 +169,7 @@ mod tests {
         for example in EXAMPLES {
             let decks: BTreeSet<String> = names(&root.join(example.name))
                 .into_iter()
-                .filter(|n| n.starts_with("in.") || n.ends_with(".obj"))
+                .filter(|n| n.starts_with("in.") || n.ends_with(".obj") || n.ends_with(".stl"))
                 .collect();
             assert_eq!(
                 decks,
