@@ -77,6 +77,7 @@ const SPARED: &[(&str, &str, &str)] = &[
         "what formulas read is the deck's",
     ),
     ("bond_break.rs", "v", "only beside a ledger"),
+    ("massflow_mesh.rs", "v mass id", "only where a grain passes"),
     ("langevin.rs", "rank", "only where grains stand in the order of space"),
     ("wall/op.rs", "box", "only where grains of a restart file touch regions"),
     ("damping_cundall.rs", "slots", "only with `scale v_name`"),
