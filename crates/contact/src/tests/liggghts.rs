@@ -18,10 +18,10 @@ fn mass(radius: f64) -> f64 {
     DENSITY * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
 }
 
-/// i lies on the side of negative x, as the first grain of the program's decks.
+/// i lies on the side of negative x, as the first grain of the program's decks; a negative overlap is a gap.
 fn pair(radii: [f64; 2], overlap: f64) -> Geometry {
     let d = [overlap - radii[0] - radii[1], 0.0, 0.0];
-    Geometry::of_spheres(d, radii, radii.map(mass), 0.0).unwrap()
+    Geometry::of_spheres(d, radii, radii.map(mass), f64::INFINITY).unwrap()
 }
 
 /// A grain on the wall on its side of negative x.

@@ -173,6 +173,13 @@ mod tests {
     #[test]
     fn normal_models_have_the_numbers_of_their_table() {
         let shown: Vec<String> = NORMALS.iter().map(Alternative::shown).collect();
-        assert_eq!(shown[..4], ["none", "hooke kn eta", "hooke/velocity E eta nu V", "hertz kn eta"]);
+        let expected = [
+            "none",
+            "hooke kn eta",
+            "hooke/velocity E eta nu V",
+            "hooke/hysteresis E eta nu V stiffen stick phi",
+            "hertz kn eta",
+        ];
+        assert_eq!(shown[..5], expected);
     }
 }

@@ -46,13 +46,26 @@ fn a_rotation_has_no_strain_and_no_stress() {
     }
 }
 
+/// A layer that stays in its plane z = 0 is not strained across it; one that leans has no gradient.
 #[test]
-fn flat_families_have_no_gradient() {
-    let x: Vec<[f64; 3]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]).collect();
+fn flat_families_have_a_gradient_in_their_plane_alone() {
+    for lean in [0.0, 0.3] {
+        flat_family(lean);
+    }
+}
+
+fn flat_family(lean: f64) {
+    let at = |i: i32| [f64::from(i % 5), f64::from(i / 5), lean * f64::from(i % 5)];
+    let x: Vec<[f64; 3]> = (0..25).map(at).collect();
     let mut table = PmbTable::new(1);
     table.set(1, 1, PmbCoeff { c: 1.0, horizon: 2.015, s00: 1.0, alpha: 0.0 }).unwrap();
     let bounds = Bounds { lo: [-50.0; 3], hi: [50.0; 3], periodic: [false; 3], tilt: [0.0; 3] };
     let view = PeriView { x: &x, x0: &x, kind: &[1; 25], volume: &[1.0; 25], bounds, excluded: None };
     let families = Families::build(&view, &table, FamilyOptions::new(1.0)).unwrap();
-    assert!((0..25).all(|i| families.gradient(&view, i).is_none()));
+    let gradients: Vec<_> = (0..25).filter_map(|i| families.gradient(&view, i)).collect();
+    assert_eq!(gradients.len(), if lean == 0.0 { 25 } else { 0 });
+    for f in gradients {
+        let unit = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
+        assert!((0..9).all(|k| (f[k / 3][k % 3] - unit(k / 3, k % 3)).abs() < 1e-13), "{f:?}");
+    }
 }
