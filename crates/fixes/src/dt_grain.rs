@@ -9,7 +9,6 @@ use perigrain_styles::common::about;
 use perigrain_styles::matter::publish;
 use perigrain_styles::mesh_surface::{MeshSurface, SURFACES};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::surface_speed::fastest;
 use perigrain_styles::words::{Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::adapted::Coefficient;
@@ -91,18 +90,11 @@ struct Declared {
 type Materials = Vec<Option<(f64, f64)>>;
 
 impl Declared {
-    /// The step over the Rayleigh time and over the Hertz time, and the way in a step over the skin.
-    fn parts(
-        &self,
-        w: &World,
-        materials: &Materials,
-        surfaces: &[MeshSurface],
-        dt: f64,
-        span: Span,
-    ) -> Result<[f64; 3]> {
+    /// The step over the Rayleigh time and over the Hertz time, and the way in a step over the skin; `fastest` is the speed of the
+    /// fastest surface [velocity].
+    fn parts(&self, w: &World, materials: &Materials, fastest: f64, dt: f64, span: Span) -> Result<[f64; 3]> {
         let (p, bit) = (&w.particles, self.group.bit());
         let speed = p.v.iter().map(|v| length(*v)).fold(0.0, f64::max);
-        let fastest = surfaces.iter().map(|surface| surface.speed(w)).fold(fastest(w), f64::max);
         let v = (speed + speed.max(fastest)).max(self.vmax);
         // Forces are in units of mass times acceleration over this.
         let units = w.settings.units.constants().ftm2v;
@@ -164,7 +156,8 @@ impl Fix for Declared {
         let (me, when) = (self.clone(), When::Every(self.every));
         let mut warned = false;
         let look = move |w: &mut World, t: &Tick| {
-            let parts = me.parts(w, &materials, &surfaces, t.dt, span)?;
+            let fastest = surfaces.iter().map(|surface| surface.speed(w)).fold(0.0, f64::max);
+            let parts = me.parts(w, &materials, fastest, t.dt, span)?;
             publish(w, slot, t, 0.0, &parts);
             let Some(text) = me.judge(parts) else { return Ok(()) };
             let text = format!("the time step is too long: at step {} it is {text}", t.step);
@@ -193,7 +186,6 @@ impl Fix for Declared {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perigrain_styles::surface_speed::note;
     use perigrain_styles::testing::Bench;
     use perigrain_world::AtomStyle;
 
@@ -209,7 +201,7 @@ mod tests {
         b
     }
 
-    fn parts(b: &Bench, words: &str) -> [f64; 3] {
+    fn parts(b: &Bench, words: &str, fastest: f64) -> [f64; 3] {
         b.fix(&DtGrain, words).unwrap();
         let fix = Declared {
             id: "f".into(),
@@ -220,20 +212,19 @@ mod tests {
             warn: true,
             error: false,
         };
-        fix.parts(&b.world, &vec![Some((5e6, 0.45))], &[], 1e-5, Span::default()).unwrap()
+        fix.parts(&b.world, &vec![Some((5e6, 0.45))], fastest, 1e-5, Span::default()).unwrap()
     }
 
     // LIGGGHTS 3.8.0, check/timestep/gran, 12 printed digits: 15 mm at 1 m/s, also with a surface at 3 m/s; 5 mm at 0.1 m/s.
     #[test]
     fn parts_are_those_of_liggghts() {
         let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] / b[k] - 1.0).abs() < 1e-10);
-        let mut b = scene(0.015, 1.0);
-        let found = parts(&b, "1 0.1 0.1");
+        let b = scene(0.015, 1.0);
+        let found = parts(&b, "1 0.1 0.1", 0.0);
         assert!(near(found, [0.00529414932442, 0.00227247505048, 0.01]), "{found:?}");
-        note(&mut b.world, "belt", 3.0);
-        let found = parts(&b, "1 0.1 0.1");
+        let found = parts(&b, "1 0.1 0.1", 3.0);
         assert!(near(found, [0.00529414932442, 0.00261038835226, 0.02]), "{found:?}");
-        let found = parts(&scene(0.005, 0.1), "1 0.1 0.1");
+        let found = parts(&scene(0.005, 0.1), "1 0.1 0.1", 0.0);
         assert!(near(found, [0.0158824479733, 0.00430150446974, 0.001]), "{found:?}");
     }
 
@@ -257,6 +248,6 @@ mod tests {
         assert!(text.contains("Rayleigh") && !text.contains("Hertz") && text.contains("skin"), "{text}");
         // Without a material there is nothing to compare with.
         let b = scene(0.01, 1.0);
-        assert!(fix.parts(&b.world, &vec![None], &[], 1.0, Span::default()).is_err());
+        assert!(fix.parts(&b.world, &vec![None], 0.0, 1.0, Span::default()).is_err());
     }
 }

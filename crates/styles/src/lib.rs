@@ -37,7 +37,6 @@ pub mod seal;
 pub mod step_op;
 pub mod stretching;
 pub mod surface;
-pub mod surface_speed;
 #[cfg(feature = "testing")]
 pub mod testing;
 pub mod triangles;

@@ -1,5 +1,7 @@
 //! The op of a wall: lists nearby particles, finds contacts, and computes forces on particles and wall.
 
+mod half;
+
 use super::peace::Peace;
 use super::plastic::Plastic;
 use super::words::Ruled;
@@ -24,7 +26,8 @@ use perigrain_world::field::{
 use perigrain_world::{Key, Numbers, Seen, SlotId, World};
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+pub use half::halves;
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
 pub const COLUMNS: usize = 8;
@@ -419,69 +422,6 @@ fn give(w: &mut World, key: Key<Contacts>, memory: Contacts) {
     match w.wall_contacts.get_mut(key) {
         Some(place) => *place = memory,
         None => drop(w.wall_contacts.insert(key, memory)),
-    }
-}
-
-/// One wall as two ops, for plastic grains: contacts before all forces, wall forces after pair forces.
-pub fn halves(wall: WallOp) -> Vec<Box<dyn Op>> {
-    let name = wall.name.clone();
-    let both = Arc::new(Mutex::new(wall));
-    let half = |early| Box::new(Half { name: name.clone(), early, wall: both.clone() }) as Box<dyn Op>;
-    vec![half(true), half(false)]
-}
-
-struct Half {
-    name: String,
-    early: bool,
-    wall: Arc<Mutex<WallOp>>,
-}
-
-impl Half {
-    fn wall(&self) -> MutexGuard<'_, WallOp> {
-        self.wall.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-impl Op for Half {
-    fn about(&self) -> About {
-        About::new(
-            &self.name,
-            if self.early { Stage::PreForce } else { Stage::PostForce },
-            Needs::new()
-                .read(
-                    X | V
-                        | OMEGA
-                        | RADIUS
-                        | MASS
-                        | MASK
-                        | WALL_CONTACTS
-                        | field::COLUMNS
-                        | TAG
-                        | REGIONS
-                        | LISTS
-                        | BOX,
-                )
-                .add(F | TORQUE)
-                .write(WALL_CONTACTS | RADIUS | FACTS | SLOTS)
-                .keep(field::COLUMNS | MEMO),
-        )
-    }
-
-    fn run(&mut self, w: &mut World, t: &Tick) -> Result<()> {
-        let mut wall = self.wall();
-        match (self.early, t.unchanged) {
-            (_, true) => Ok(()),
-            (true, _) => wall.approach(w, t),
-            (false, _) => wall.run(w, t),
-        }
-    }
-
-    fn finish(&mut self, w: &mut World) -> Result<()> {
-        if self.early { Ok(()) } else { self.wall().finish(w) }
-    }
-
-    fn bytes(&self, w: &World) -> u64 {
-        self.wall().bytes(w) / 2
     }
 }
 
