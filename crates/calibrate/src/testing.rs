@@ -84,7 +84,7 @@ impl Probe for Law {
     fn listed(&self, _w: &World) -> Result<Vec<[u32; 2]>> {
         Ok(vec![])
     }
-    fn look(&mut self, _w: &World, _request: Request) -> Result<Vec<Interaction>> {
+    fn look(&mut self, _w: &World, _request: Request, _closely: bool) -> Result<Vec<Interaction>> {
         Ok(vec![])
     }
     fn pressed(&self, _types: [u16; 2], overlap: f64, curvature: f64) -> Option<[f64; 3]> {

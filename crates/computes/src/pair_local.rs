@@ -4,7 +4,7 @@ use super::{Compute, ComputeStyle};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
 use perigrain_plan::{Op, Stage, When};
-use perigrain_styles::probe::{HISTORY, Interaction, OWN, Probe, Request, look_all};
+use perigrain_styles::probe::{Close, HISTORY, Interaction, OWN, Probe, Request, look_closely};
 use perigrain_styles::step_op::{Wanted, fill};
 use perigrain_styles::words::{Alternative, Kind, Syntax, Value, Words, alternatives, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
@@ -74,6 +74,8 @@ impl Quantity {
         let end = |which: usize| [p.i, p.j][which] as usize;
         let radius = |which: usize| particles.radius.get(end(which)).copied().unwrap_or(0.0);
         let overlap = || radius(0) + radius(1) - p.distance();
+        // Pairs that do not touch, and styles with nothing else to say, have zeros.
+        let close = |number: &dyn Fn(&Close) -> f64| p.close.as_deref().map_or(0.0, number);
         match self {
             Quantity::Distance => p.distance(),
             Quantity::Along(k) => p.d[k],
@@ -81,7 +83,7 @@ impl Quantity {
             // Pairs that do not touch have force 0, not −0.
             Quantity::Force => p.central() + 0.0,
             Quantity::ForceAlong(k) => p.central() * p.d[k] / p.distance() + 0.0,
-            Quantity::Own(k) => p.own[k],
+            Quantity::Own(k) => close(&|c| c.own[k]),
             Quantity::Place(0, k) => particles.x[end(0)][k],
             // Of the image that the first one meets.
             Quantity::Place(_, k) => particles.x[end(0)][k] - p.d[k],
@@ -93,11 +95,11 @@ impl Quantity {
                 f64::from(u8::from((0..3).any(across)))
             }
             Quantity::WholeForce(k) => p.force[k],
-            Quantity::Torque(k) => p.torque[k],
+            Quantity::Torque(k) => close(&|c| c.torque[k]),
             Quantity::Overlap => overlap(),
             Quantity::Area => circle(p.distance(), radius(0), radius(1)),
             Quantity::Point(k) => particles.x[end(0)][k] - p.d[k] * radius(0) / (radius(0) + radius(1)),
-            Quantity::History(k) => p.history[k],
+            Quantity::History(k) => close(&|c| c.history[k]),
         }
     }
 }
@@ -267,7 +269,7 @@ impl Compute for Declared {
             | VOLUME
             | X0;
         Ok(fill(&self.id, &Wanted { slot, stage, when }, reads, move |w, _, out| {
-            let pairs = look_all(&mut probes, w, Request::idle(!me.touching))?;
+            let pairs = look_closely(&mut probes, w, Request::idle(!me.touching))?;
             out.local_cols = me.values.len();
             out.local.clear();
             for p in pairs.iter().filter(|p| of_group(w, me.group, p) && (!me.touching || touches(w, p))) {

@@ -10,7 +10,7 @@ use perigrain_contact::bodies::solids;
 use perigrain_contact::driver::{Average, Grains, Rule, Rules, Sweep};
 use perigrain_contact::{Advance, Geometry, Wrench};
 use perigrain_neigh::list::{Pair, Reach, Wanted, difference};
-use perigrain_styles::probe::{Interaction, OWN, Probe, Request, Springs};
+use perigrain_styles::probe::{Close, Interaction, OWN, Probe, Request, Springs};
 use perigrain_world::columns::TEMPERATURE;
 use perigrain_world::contacts::{Contacts, Rolls};
 use perigrain_world::index::Index;
@@ -217,27 +217,33 @@ impl Probe for ContactProbe {
         Ok(self.list(w)?.iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, request: Request, closely: bool) -> Result<Vec<Interaction>> {
         let p = &w.particles;
         let own = self.own;
         let warm = conducts(&self.rules).then(|| w.columns.property(*TEMPERATURE)).flatten();
         let (warm, last) = (warm.and_then(|key| w.columns.get_scalar(key)), self.own() - 1);
         let acting = self.evaluated(w, request, |grains, _, sweep, memory| {
             let mut all: Vec<_> =
-                sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench, own)).collect();
-            let remembered = memory.history.chunks_exact(memory.width.max(1));
-            for (a, row) in all.iter_mut().zip(remembered) {
-                a.history.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+                sweep.contacts().map(|(pair, wrench)| interaction(grains, pair, wrench)).collect();
+            if !closely {
+                return all;
             }
-            if own == Own::Mdr {
-                // In the evaluation data of such contacts the area stands before the energy at the end.
-                let rows = memory.history.chunks_exact(memory.width.max(1));
-                let area = |row: &[f64]| row.iter().rev().nth(1).copied().unwrap_or(0.0);
-                all.iter_mut().zip(rows).for_each(|(a, row)| a.own[12] = area(row));
+            let mut near: Vec<_> = sweep
+                .contacts()
+                .zip(&all)
+                .map(|((pair, wrench), a)| close(grains, pair, wrench, a.d, own))
+                .collect();
+            for (c, row) in near.iter_mut().zip(memory.history.chunks_exact(memory.width.max(1))) {
+                c.history.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+                if own == Own::Mdr {
+                    // In the evaluation data of such contacts the area stands before the energy at the end.
+                    c.own[12] = row.iter().rev().nth(1).copied().unwrap_or(0.0);
+                }
             }
             if let Some(temperature) = warm {
-                all.iter_mut().zip(sweep.heat(temperature)).for_each(|(a, heat)| a.own[last] = heat);
+                near.iter_mut().zip(sweep.heat(temperature)).for_each(|(c, heat)| c.own[last] = heat);
             }
+            all.iter_mut().zip(near).for_each(|(a, c)| a.close = Some(Box::new(c)));
             all
         })?;
         if request != Request::Idle {
@@ -311,9 +317,14 @@ impl Probe for ContactProbe {
     }
 }
 
-fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Interaction {
-    let (i, j) = (pair.i as usize, pair.j as usize);
+fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench) -> Interaction {
     let d = difference(grains.x, &grains.period, pair);
+    Interaction { i: pair.i, j: pair.j, d, force: wrench.force, ..Interaction::default() }
+}
+
+/// What a style says of a contact of grains `d` apart beyond its force and memory.
+fn close(grains: &Grains, pair: &Pair, wrench: &Wrench, d: Vec3, own: Own) -> Close {
+    let (i, j) = (pair.i as usize, pair.j as usize);
     let distance = length(d);
     let n = scale(1.0 / distance, d);
     let across = sub(wrench.force, scale(dot(wrench.force, n), n));
@@ -343,6 +354,5 @@ fn interaction(grains: &Grains, pair: &Pair, wrench: &Wrench, own: Own) -> Inter
             numbers[7..10].copy_from_slice(&sub(relative, along));
         }
     }
-    let (force, torque) = (wrench.force, wrench.torque_i);
-    Interaction { i: pair.i, j: pair.j, d, force, torque, own: numbers, ..Interaction::default() }
+    Close { own: numbers, torque: wrench.torque_i, ..Close::default() }
 }

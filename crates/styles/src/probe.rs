@@ -12,7 +12,7 @@ pub const OWN: usize = 14;
 pub const HISTORY: usize = 12;
 
 /// Two particles and what they do to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Interaction {
     /// The particle of smaller tag.
     pub i: u32,
@@ -24,12 +24,29 @@ pub struct Interaction {
     pub force: Vec3,
     /// Energy of the pair [energy].
     pub energy: f64,
+    /// What else a style says of the pair, where it is looked at closely. Apart, because sums over all pairs need none of it.
+    pub close: Option<Box<Close>>,
+}
+
+/// What a pair style says of one pair beyond its force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Close {
     /// Additional numbers of the style (`p1`, `p2` … of compute pair/local).
     pub own: [f64; OWN],
     /// Torque on i [torque].
     pub torque: Vec3,
     /// The first numbers that a contact remembers.
     pub history: [f64; HISTORY],
+}
+
+impl Close {
+    /// Adds what another style says of the same pair.
+    fn add(&mut self, other: &Close) {
+        let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        add(&mut self.own, &other.own);
+        add(&mut self.torque, &other.torque);
+        add(&mut self.history, &other.history);
+    }
 }
 
 impl Interaction {
@@ -112,11 +129,11 @@ pub trait Probe: Send {
     /// What cannot be listed.
     fn listed(&self, w: &World) -> Result<Vec<[u32; 2]>>;
 
-    /// The requested pairs, in the order of the two tags.
+    /// The requested pairs, in the order of the two tags; `closely`: with [`Interaction::close`], if the style has more to say.
     ///
     /// # Errors
     /// What is missing in the scene.
-    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>>;
+    fn look(&mut self, w: &World, request: Request, closely: bool) -> Result<Vec<Interaction>>;
 
     /// Calls `take` with the springs of each contact.
     ///
@@ -146,14 +163,31 @@ pub trait Probe: Send {
     }
 }
 
-/// The interactions of several styles, pair by pair: forces, energies and own numbers of a pair add up.
+/// The interactions of several styles, pair by pair: forces and energies of a pair add up.
 ///
 /// # Errors
 /// As [`Probe::look`].
 pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, request: Request) -> Result<Vec<Interaction>> {
+    looked(probes, w, request, false)
+}
+
+/// [`look_all`] with what each style says of a pair beyond its force, which adds up as well.
+///
+/// # Errors
+/// As [`Probe::look`].
+pub fn look_closely(probes: &mut [Box<dyn Probe>], w: &World, request: Request) -> Result<Vec<Interaction>> {
+    looked(probes, w, request, true)
+}
+
+fn looked(
+    probes: &mut [Box<dyn Probe>],
+    w: &World,
+    request: Request,
+    closely: bool,
+) -> Result<Vec<Interaction>> {
     let mut all: Vec<Interaction> = vec![];
     for p in probes.iter_mut() {
-        all.append(&mut p.look(w, request)?);
+        all.append(&mut p.look(w, request, closely)?);
     }
     if probes.len() < 2 {
         return Ok(all);
@@ -164,10 +198,12 @@ pub fn look_all(probes: &mut [Box<dyn Probe>], w: &World, request: Request) -> R
         let same = (later.i, later.j) == (first.i, first.j) && later.d == first.d;
         if same {
             (0..3).for_each(|k| first.force[k] += later.force[k]);
-            (0..3).for_each(|k| first.torque[k] += later.torque[k]);
-            (0..OWN).for_each(|k| first.own[k] += later.own[k]);
-            (0..HISTORY).for_each(|k| first.history[k] += later.history[k]);
             first.energy += later.energy;
+            match (&mut first.close, &later.close) {
+                (Some(close), Some(more)) => close.add(more),
+                (close @ None, more) => close.clone_from(more),
+                (Some(_), None) => {}
+            }
         }
         same
     });

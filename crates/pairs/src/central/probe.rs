@@ -41,7 +41,7 @@ impl<L: Law> Probe for CentralProbe<L> {
         Ok(self.list(w).iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, _request: Request) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, _request: Request, _closely: bool) -> Result<Vec<Interaction>> {
         self.table.renew(w);
         self.table.weigh(w);
         let interaction = |pair: &Pair| {

@@ -64,7 +64,7 @@ impl Probe for BondProbe {
         Ok(near.iter().map(|p| [p.i, p.j]).collect())
     }
 
-    fn look(&mut self, w: &World, request: Request) -> Result<Vec<Interaction>> {
+    fn look(&mut self, w: &World, request: Request, _closely: bool) -> Result<Vec<Interaction>> {
         let Some(families) = &*w.families else { return Ok(vec![]) };
         let view = view(w)?;
         let mut living = vec![];
