@@ -17,6 +17,7 @@ mod seams;
 #[cfg(test)]
 mod shapes;
 mod sheet;
+mod sides;
 mod solid;
 mod stl;
 #[cfg(test)]

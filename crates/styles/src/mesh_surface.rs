@@ -162,9 +162,18 @@ impl SurfacePose {
 
     /// Stores it.
     pub fn store(&self, w: &mut World, key: Numbers) {
-        let mut numbers = self.turn.to_vec();
-        [self.shift, self.velocity, self.omega].iter().for_each(|v| numbers.extend(v));
-        w.memo.insert(key, numbers);
+        let vectors = [self.shift, self.velocity, self.omega];
+        w.memo.put(key, self.turn.iter().chain(vectors.as_flattened()).copied());
+    }
+
+    /// Whether it is where its line puts it.
+    pub fn is_first(&self) -> bool {
+        (self.turn, self.shift) == (UNTURNED, [0.0; 3])
+    }
+
+    /// Whether it moves.
+    pub fn moves(&self) -> bool {
+        (self.velocity, self.omega) != ([0.0; 3], [0.0; 3])
     }
 
     /// Where a point is.

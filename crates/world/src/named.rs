@@ -353,6 +353,15 @@ impl<T> Named<T> {
     }
 }
 
+impl Named<Vec<f64>> {
+    /// Puts numbers in, in the room of those before.
+    pub fn put(&mut self, key: Key<Vec<f64>>, numbers: impl IntoIterator<Item = f64>) {
+        let place = self.get_or(key, Vec::new);
+        place.clear();
+        place.extend(numbers);
+    }
+}
+
 impl<T> std::ops::Index<&str> for Named<T> {
     type Output = T;
     /// The value of a name that is there, for tests.

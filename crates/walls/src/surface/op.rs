@@ -79,8 +79,8 @@ impl Running {
         }
         pose.store(w, keys.pose);
         // Walls add what grains do at this step.
-        w.memo.insert(keys.load, vec![0.0; 6]);
-        w.memo.insert(keys.touched, vec![]);
+        w.memo.put(keys.load, [0.0; 6]);
+        w.memo.put(keys.touched, []);
         let [x, y, z] = pose.at(self.surface.about);
         let out = w.slots.get_mut(self.slot);
         out.step = Some(t.step);
@@ -132,7 +132,7 @@ impl Running {
             }
         }
         for ((moved, point), rate) in self.movers.iter().zip(&points).zip(rates) {
-            w.memo.insert(moved.mover.carried, point.to_vec());
+            w.memo.put(moved.mover.carried, *point);
             match rate {
                 Part::Shift(v) => pose.velocity = add(pose.velocity, v),
                 Part::Turn(axis, rate) => {
@@ -213,7 +213,7 @@ impl Moved {
             return fail(Code::NOT_FINITE, None, text);
         }
         let before = w.memo.get(self.mover.rates).and_then(|m| <[f64; N]>::try_from(&m[..]).ok());
-        w.memo.insert(self.mover.rates, now.to_vec());
+        w.memo.put(self.mover.rates, now);
         Ok([before.unwrap_or(now), now])
     }
 }

@@ -337,10 +337,11 @@ impl WallOp {
 
     fn publish(&mut self, w: &mut World, t: &Tick, felt: [f64; FELT]) {
         let n = w.n();
-        let touching: Vec<_> = match self.local > 0 || self.surface.shares() {
-            true => contacts(&self.parts).collect(),
-            false => vec![],
-        };
+        let mut touching = vec![];
+        if self.local > 0 || self.surface.shares() {
+            touching.reserve(self.parts.iter().map(|part| part.sweep.touching().0.len()).sum());
+            touching.extend(contacts(&self.parts));
+        }
         let local = self.surface.local(w, &touching, t);
         self.surface.feel(w, &touching, felt, t);
         if w.is_narrow() {

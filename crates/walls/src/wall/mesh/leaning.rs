@@ -49,7 +49,8 @@ impl Form for Leaning {
             let count = surface.mesh.triangles().len() as u32;
             let areas = surface.mesh.triangles().iter().map(perigrain_mesh::area).collect();
             let (pose, corners) = (surface.pose(cx.world()), surface.corners());
-            surfaces.push(One { surface, slot, first, pose, corners, areas });
+            let (is_first, moves) = (pose.is_first(), pose.moves());
+            surfaces.push(One { surface, slot, first, pose, is_first, moves, corners, areas });
             first += count;
         }
         Ok(Box::new(All { surfaces }))
@@ -63,6 +64,9 @@ struct One {
     /// The number of its first triangle among those of all surfaces.
     first: u32,
     pose: SurfacePose,
+    /// Whether it is in its first position, and whether it moves.
+    is_first: bool,
+    moves: bool,
     corners: Vec<Vec3>,
     areas: Vec<f64>,
 }
@@ -73,19 +77,30 @@ impl One {
         self.areas.len() as u32
     }
 
-    /// The contact points within reach, among these triangles or all.
+    /// The contact points within reach among these triangles, which are numbered as those of all surfaces.
     fn near(&self, pieces: &[u32], x: Vec3, reach: f64, spare: &mut Vec<FacetNear>, out: &mut Vec<Near>) {
-        spare.clear();
-        let own = self.pose.undo(x);
-        self.surface.mesh.near_among(pieces, own, reach, spare);
-        for &FacetNear { part, normal, distance, .. } in &*spare {
-            let foot = sub(own, scale(distance, normal));
-            let sliding = self.surface.sliding(part as usize, foot);
-            let normal = self.pose.direction(normal);
-            let place = sub(x, scale(distance, normal));
-            let velocity = add(self.pose.velocity_at(place), self.pose.direction(sliding));
-            out.push(Near { part: self.first + part, normal, distance, radius: 0.0, velocity });
-        }
+        // Turning a vector there and back takes longer than all the rest, and most surfaces stand where their lines put them.
+        let pose = (!self.is_first).then_some(&self.pose);
+        let own = pose.map_or(x, |pose| pose.undo(x));
+        let members = (pieces, self.first);
+        self.surface.mesh.near_among(
+            members,
+            own,
+            reach,
+            spare,
+            |FacetNear { part, normal, distance, .. }| {
+                let mut velocity = [0.0; 3];
+                if self.surface.slide.is_some() {
+                    velocity = self.surface.sliding(part as usize, sub(own, scale(distance, normal)));
+                    velocity = pose.map_or(velocity, |pose| pose.direction(velocity));
+                }
+                let normal = pose.map_or(normal, |pose| pose.direction(normal));
+                if self.moves {
+                    velocity = add(self.pose.velocity_at(sub(x, scale(distance, normal))), velocity);
+                }
+                out.push(Near { part: self.first + part, normal, distance, radius: 0.0, velocity });
+            },
+        );
     }
 
     /// Adds what grains do to it.
@@ -93,9 +108,14 @@ impl One {
         let own = self.first..self.first + self.count();
         let about = self.pose.at(self.surface.about);
         let keys = self.surface.keys;
-        let (mut force, mut torque, mut touched) = ([0.0; 3], [0.0; 3], vec![]);
+        let mut contacts = contacts.iter().filter(|(touch, _)| own.contains(&touch.near.part)).peekable();
+        if contacts.peek().is_none() {
+            return;
+        }
+        let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
+        let mut touched = w.memo.get_mut(keys.touched).map(std::mem::take).unwrap_or_default();
         let mut worn = vec![];
-        for (touch, wrench) in contacts.iter().filter(|(touch, _)| own.contains(&touch.near.part)) {
+        for (touch, wrench) in contacts {
             let (i, part) = (touch.grain as usize, touch.near.part - self.first);
             let foot = sub(w.particles.x[i], scale(touch.near.distance, touch.near.normal));
             force = sub(force, wrench.force);
@@ -108,9 +128,6 @@ impl One {
                 worn.push((part as usize, k * finnie(v, touch.near.normal) * length(wrench.force) * t.dt));
             }
         }
-        if touched.is_empty() {
-            return;
-        }
         if let Some(wear) = w.memo.get_mut(keys.wear) {
             for (part, work) in worn {
                 if let Some(own) = wear.get_mut(part) {
@@ -118,13 +135,11 @@ impl One {
                 }
             }
         }
-        if let Some(all) = w.memo.get_mut(keys.touched) {
-            all.extend(touched);
-        }
+        w.memo.insert(keys.touched, touched);
         if let Some(load) = w.memo.get_mut(keys.load) {
             load.iter_mut().zip(force.iter().chain(&torque)).for_each(|(sum, more)| *sum += more);
-            let load = load.clone();
-            w.slots.get_mut(self.slot).vector.iter_mut().zip(load).for_each(|(to, from)| *to = from);
+            let shown = w.slots.get_mut(self.slot).vector.iter_mut();
+            shown.zip(load).for_each(|(to, from)| *to = *from);
         }
     }
 }
@@ -155,6 +170,10 @@ impl Surface for All {
         for one in &mut self.surfaces {
             let pose = one.surface.pose(w);
             let before = std::mem::replace(&mut one.pose, pose);
+            (one.is_first, one.moves) = (pose.is_first(), pose.moves());
+            if pose == before {
+                continue;
+            }
             // Of a rigid displacement a corner of the box around the surface moves farthest.
             let ways = one.corners.iter().map(|c| length(sub(pose.at(*c), before.at(*c))));
             way = ways.fold(way, f64::max);
@@ -229,13 +248,8 @@ impl Wall for Placed<'_> {
         for one in self.0 {
             let (own, others) = rest.split_at(rest.partition_point(|part| *part < one.first + one.count()));
             rest = others;
-            match (own, one.first) {
-                ([], _) => {}
-                (own, 0) => one.near(own, x, reach, spare, out),
-                (own, first) => {
-                    let own: Vec<u32> = own.iter().map(|part| part - first).collect();
-                    one.near(&own, x, reach, spare, out);
-                }
+            if !own.is_empty() {
+                one.near(own, x, reach, spare, out);
             }
         }
     }

@@ -263,18 +263,22 @@ impl Wall for Placed<'_> {
         out: &mut Vec<Near>,
     ) {
         let me = self.0;
-        spare.clear();
-        me.mesh.near_among(pieces, me.undo(x), reach, spare);
-        for &FacetNear { part, normal, distance, .. } in &*spare {
-            let mut near = Near { part, normal, distance, radius: 0.0, velocity: me.velocity };
-            if let Motion::Rotate(point, axis, omega) = &me.motion {
-                near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
-                let place = sub(x, scale(near.distance, near.normal));
-                let arm = sub(place, add(*point, me.shift));
-                near.velocity = add(near.velocity, scale(*omega, cross(*axis, arm)));
-            }
-            out.push(near);
-        }
+        me.mesh.near_among(
+            (pieces, 0),
+            me.undo(x),
+            reach,
+            spare,
+            |FacetNear { part, normal, distance, .. }| {
+                let mut near = Near { part, normal, distance, radius: 0.0, velocity: me.velocity };
+                if let Motion::Rotate(point, axis, omega) = &me.motion {
+                    near.normal = turned(near.normal, [0.0; 3], *axis, me.angle.into());
+                    let place = sub(x, scale(near.distance, near.normal));
+                    let arm = sub(place, add(*point, me.shift));
+                    near.velocity = add(near.velocity, scale(*omega, cross(*axis, arm)));
+                }
+                out.push(near);
+            },
+        );
     }
 
     fn passes_some(&self) -> bool {
