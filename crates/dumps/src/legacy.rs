@@ -60,7 +60,10 @@ fn rows<'n, R: AsRef<[f64]> + ?Sized + 'n>(
 ) {
     for row in all {
         for (k, x) in row.as_ref().iter().enumerate() {
-            let _ = write!(text, "{}{}", if k > 0 { " " } else { "" }, general(*x, digits));
+            if k > 0 {
+                text.push(' ');
+            }
+            text.push_str(&general(*x, digits));
         }
         text.push('\n');
     }

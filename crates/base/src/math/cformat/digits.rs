@@ -59,7 +59,12 @@ fn scaled(size: f64, k: i32) -> Option<u64> {
 
 /// Writes `count` significant digits without a point and returns the decimal exponent of the first.
 pub(super) fn significant(out: &mut Vec<u8>, size: f64, count: usize) -> i32 {
-    if size > 0.0 && (1..=17).contains(&count) {
+    if size == 0.0 {
+        // Columns of dumps are full of it.
+        out.resize(out.len() + count.max(1), b'0');
+        return 0;
+    }
+    if (1..=17).contains(&count) {
         let binary = (size.to_bits() >> 52) as i32 - 1023;
         // floor(binary·log10 2) is the exponent or one less.
         let mut exponent = (binary * 78_913) >> 18;
@@ -126,6 +131,16 @@ mod tests {
         let mut out = vec![];
         write(&mut out);
         String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn zero_has_as_many_digits() {
+        for count in [0, 1, 6, 17, 20] {
+            let (mut a, mut b) = (1, 1);
+            let ours = text(|out| a = significant(out, 0.0, count));
+            let theirs = text(|out| b = spelled(out, 0.0, count));
+            assert_eq!((a, ours), (b, theirs), "{count}");
+        }
     }
 
     #[test]
