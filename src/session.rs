@@ -455,6 +455,8 @@ impl Session {
     }
 
     fn command(&mut self, script: &mut Script, cmd: &Command) -> Result<Option<i32>> {
+        let native = self.dialect.formula(cmd);
+        let cmd = native.as_ref().unwrap_or(cmd);
         match self.flow(script, cmd)? {
             Flow::Quit(status) => {
                 self.check_rest(script);

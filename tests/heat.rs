@@ -174,3 +174,111 @@ fn what_is_held_jumps_at_once() {
         assert!((jumps[3] - jumps[4]).abs() < 1e-9 * jumps[3], "{words}: {jumps:?}");
     }
 }
+
+/// Grains that conduct heat, some of which come later and have sources; `FIXES` and `RUN` are filled in.
+const GRAINS: &str = "\
+units si
+atom_style sphere
+boundary f f f
+region box block -0.02 0.02 -0.02 0.02 0 0.06 units box
+region slot block -0.012 0.012 -0.012 0.012 0.03 0.055 units box
+create_box 1 box
+neighbor 0.001 bin
+pair_style granular
+pair_coeff * * hertz/material 5e6 0.7 0.45 damping coeff_restitution tangential mindlin NULL NULL 0.5 slip spring heat contact 100
+FIXES
+fix flow all heat/flow constant 10 source d_power
+fix floor all wall/gran coeff 1 zplane 0 NULL
+fix sides all wall/gran coeff 1 zcylinder 0.02 0 0
+fix move all nve/sphere
+fix down all gravity 9.81 vector 0 0 -1
+mixture m mass 4711 sphere 1 0.004 2500 1.0
+fix ins all insert m pack region slot number 40 every 1000 inside yes seed 4711
+timestep 2e-5
+compute t all property/atom temperature
+compute sum all reduce sum c_t
+compute hi all reduce max c_t
+compute lo all reduce min c_t
+compute p all property/atom d_power
+compute watts all reduce sum c_p
+thermo 1000
+thermo_style custom step atoms c_sum f_flow c_hi c_lo c_watts ke time
+thermo_modify format float %23.17g
+RUN
+";
+
+fn grains(fixes: &str, run: &str) -> String {
+    GRAINS.replace("FIXES", fixes).replace("RUN", run)
+}
+
+/// Temperature of 300 K, also of those that come later, and a power of 0.
+const BEGIN: &str =
+    "fix warm all property/atom temperature initial 300\nfix heat all property/atom heatflow d_power";
+
+#[test]
+fn grains_that_come_later_have_the_initial_temperature() {
+    let deck = grains(BEGIN, "run 1\nset group all temperature 500\nrun 2999");
+    let row = last_row(&deck, &["-threads", "1"]);
+    // 40 grains at 500 K and as many as there are more at 300 K; walls without a temperature take no heat.
+    let (atoms, capacity) = (row[1], 4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2500.0 * 10.0);
+    assert!(atoms > 45.0, "{row:?}");
+    let heat = capacity * (40.0 * 500.0 + (atoms - 40.0) * 300.0);
+    // Sums of 3,000 steps.
+    assert!(
+        (row[3] / heat - 1.0).abs() < 1e-11 && (row[2] * capacity / heat - 1.0).abs() < 1e-11,
+        "{row:?} {heat}"
+    );
+    assert!(row[4] < 500.0 && row[5] >= 300.0 && row[5] < 320.0, "{row:?}");
+    for threads in ["2", "4"] {
+        assert_eq!(row, last_row(&deck, &["-threads", threads]));
+    }
+    assert_eq!(
+        row,
+        last_row(&grains(BEGIN, "run 1\nset group all temperature 500\nrun 1500\nrun 1499"), &[])
+    );
+    // Zeros without the word, as LAMMPS has them.
+    let zeros = "fix warm all property/atom temperature heatflow d_power";
+    let row = last_row(&grains(zeros, "run 1\nset group all temperature 500\nrun 1999"), &[]);
+    assert_eq!(row[5], 0.0);
+}
+
+#[test]
+fn sources_of_grains_heat_them() {
+    let run = "run 1\nset group all d_power 0.25\nrun 999";
+    let row = last_row(&grains(BEGIN, run), &[]);
+    let capacity = 4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2500.0 * 10.0;
+    // 40 grains, 0.25 W each for 999 steps of 20 µs.
+    let heat = 40.0 * (capacity * 300.0 + 0.25 * 999.0 * 2e-5);
+    assert!((row[1], row[6]) == (40.0, 10.0) && (row[3] / heat - 1.0).abs() < 1e-12, "{row:?} {heat}");
+}
+
+#[test]
+fn a_restart_keeps_temperatures_and_sources() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("half.restart").display().to_string();
+    let start = "run 1\nset group all temperature 500 d_power 0.25\nrun 1499";
+    let whole = last_row(&grains(BEGIN, &format!("{start}\nrun 1000")), &[]);
+    last_row(&grains(BEGIN, &format!("{start}\nwrite_restart {file}")), &[]);
+    let again = grains(BEGIN, "run 1000").replace("create_box 1 box\n", &format!("read_restart {file}\n"));
+    assert_eq!(whole, last_row(&again, &[]));
+}
+
+/// LIGGGHTS has the circle of the overlap on walls, whatever the area between grains is: 50.1012228415 W at 500 K for a grain of 4 mm
+/// radius that lies 10 µm deep.
+#[test]
+fn walls_conduct_through_the_circle() {
+    for area in ["", "area constant 1e-6", "area projection"] {
+        let deck = format!(
+            "units si\natom_style sphere\nboundary f f f\nregion b block -0.05 0.05 -0.05 0.05 -0.05 0.05 units box\n\
+             create_box 1 b\npair_style granular\n\
+             pair_coeff * * hertz/material 5e6 0.7 0.45 damping coeff_restitution tangential none heat contact 100 {area}\n\
+             create_atoms 1 single -0.03601 0 0 units box\nset atom 1 diameter 0.008 density 8000\n\
+             fix p all property/atom temperature heatflow initial 300\nfix f all heat/flow constant 10\n\
+             fix w all wall/gran coeff 1 xplane -0.04 NULL temperature 800\nfix cold all wall/gran coeff 1 yplane -0.004 NULL\n\
+             compute q all property/atom heatflow\ncompute s all reduce sum c_q\ntimestep 2.5e-5\nneighbor 0.002 bin\n\
+             run 1\nprint \"flow $(c_s:%.12g) $(f_w[7]:%.12g)\"\n"
+        );
+        let (text, well) = run_with(&deck, &[]);
+        assert!(well && text.contains("flow 50.1012228415 -50.1012228415"), "{area}: {text}");
+    }
+}

@@ -26,6 +26,12 @@ impl Dialect {
             _ => self.translator = None,
         }
     }
+
+    /// A `variable` line with native references, where it has others: the language reads it, not a style.
+    pub(super) fn formula(&self, cmd: &Command) -> Option<Command> {
+        let translator = self.translator.as_ref().filter(|_| cmd.name.text == "variable")?;
+        translator.referring(cmd)
+    }
 }
 
 impl Session {

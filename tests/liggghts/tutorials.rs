@@ -31,6 +31,9 @@ tutorials! {
     moving_mesh_gran: "movingMeshGran", "in.movingMeshGran", 1250..=1450;
     conveyor: "conveyor", "in.conveyor", 382..=382;
     chute_wear: "chute_wear", "in.chute_wear", 800..=860;
+    heat_transfer_1: "heatTransfer_1", "in.heatGran", 890..=890;
+    heat_transfer_2: "heatTransfer_2", "in.heatGran", 890..=890;
+    hydrogel_default: "hydrogel_multicontact", "in.hydrogel_default", 1..=100_000;
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
 }
 
@@ -40,6 +43,7 @@ const REFUSED: &[(&str, &str, &str)] = &[
     ("sph_1", "in.sph_1", "fluids are not in perigrain"),
     ("sph_2", "in.sph_2", "fluids are not in perigrain"),
     ("hydrogel_multicontact", "in.hydrogel_multicontact", "multicontact"),
+    ("ParScale/fluidizedBedTempParScale", "in.liggghts_run", "a coupling to another program"),
 ];
 
 /// A copy of a tutorial in a folder of its own.
@@ -79,6 +83,63 @@ fn runs_to_its_end(name: &str, deck: &str, grains: RangeInclusive<usize>) {
     assert!(grains.contains(&found), "{deck}: {last}");
 }
 
+/// Runs the first steps of a tutorial about heat: it is shortened, and its snapshots are text. Temperatures of the last one, with what x
+/// says.
+fn heated(name: &str, steps: [usize; 2]) -> Option<(Vec<Vec<f64>>, Vec<[f64; 2]>)> {
+    let there = copy(name)?;
+    let deck = fs::read_to_string(there.path().join("in.heatGran")).unwrap();
+    let deck = deck.replace("20000 upto", &format!("{} upto", steps[0]));
+    let deck = deck.replace("50000 upto", &format!("{} upto", steps[1]));
+    let more = "\nwrite_dump all custom last.txt x f_Temp[0] modify format line \"%.12g %.12g\"\n";
+    fs::write(there.path().join("in.short"), deck + more).unwrap();
+    let text = printed(&perigrain(there.path(), &["-in", "in.short", "-log", "none"]));
+    let rows = table(&text).iter().filter_map(|l| super::reading::numbers(l)).collect();
+    let last = fs::read_to_string(there.path().join("last.txt")).unwrap_or_else(|e| panic!("{e}: {text}"));
+    let grains = last.lines().filter_map(super::reading::numbers).filter(|row| row.len() == 2);
+    let grains: Vec<[f64; 2]> = grains.map(|row| [row[0], row[1]]).collect();
+    Some((rows, grains[3..].to_vec()))
+}
+
+/// The mass of a grain times its specific heat [J/K]: 4/3 π 4 mm³ 8000 kg/m³ 10 J/(kg K).
+const CAPACITY: f64 = 4.0 / 3.0 * std::f64::consts::PI * 64e-9 * 8000.0 * 10.0;
+
+#[test]
+fn a_hot_half_of_a_bed_warms_the_other() {
+    let Some((rows, grains)) = heated("heatTransfer_1", [20_000, 49_600]) else { return };
+    let hot = grains.len() as f64;
+    assert!((hot - 890.0).abs() < 1.5);
+    // Without heat from outside: 890 grains at 300 K, then some at 800 K.
+    let total = |k: usize| rows[k][4];
+    assert!((total(0) / (hot * CAPACITY * 300.0) - 1.0).abs() < 1e-7, "{:?}", rows[0]);
+    assert!((total(19) / total(0) - 1.0).abs() < 1e-7);
+    let last = rows.last().unwrap()[4];
+    let warmed = (last / CAPACITY - hot * 300.0) / 500.0;
+    // 445 in LIGGGHTS; half a bed of random places.
+    assert!((warmed - warmed.round()).abs() < 1e-3 && (warmed - 445.0).abs() < 30.0, "{warmed}");
+    let mean = grains.iter().map(|g| g[1]).sum::<f64>() / hot;
+    assert!((mean * hot * CAPACITY / last - 1.0).abs() < 1e-7, "{mean}");
+    // LIGGGHTS: halves at 680.5 K and 419.5 K, scatter 146.8 K, from beds of other random places.
+    let half = |warm: bool| {
+        let of: Vec<f64> = grains.iter().filter(|g| (g[0] > 0.0) == warm).map(|g| g[1]).collect();
+        of.iter().sum::<f64>() / of.len() as f64
+    };
+    let scatter = (grains.iter().map(|g| (g[1] - mean).powi(2)).sum::<f64>() / hot).sqrt();
+    assert!((half(true) - half(false) - 261.0).abs() < 15.0, "{} {}", half(true), half(false));
+    assert!((scatter - 146.8).abs() < 7.0, "{scatter}");
+}
+
+#[test]
+fn sources_of_heat_add_up() {
+    let Some((rows, grains)) = heated("heatTransfer_2", [20_000, 30_000]) else { return };
+    let [before, last] = [20, rows.len() - 1].map(|k| rows[k][4]);
+    assert!((before / (grains.len() as f64 * CAPACITY * 300.0) - 1.0).abs() < 1e-7);
+    // ±1.5 W for 10,000 steps of 25 µs, in as many grains more on one side than on the other.
+    let more = (last - before) / (1.5 * 10_000.0 * 25e-6);
+    assert!((more - more.round()).abs() < 1e-2 && more.abs() < 60.0, "{more}");
+    let temperatures = grains.iter().map(|g| g[1]);
+    assert!(temperatures.clone().any(|t| t > 305.0) && temperatures.clone().any(|t| t < 295.0));
+}
+
 /// Rows of the step table.
 fn table(text: &str) -> Vec<&str> {
     text.lines().filter(|l| super::reading::numbers(l).is_some_and(|row| row.len() > 3)).collect()
@@ -86,9 +147,19 @@ fn table(text: &str) -> Vec<&str> {
 
 #[test]
 fn a_translated_tutorial_has_its_bits() {
-    for (name, deck) in [("packing", "in.packing"), ("meshGran", "in.meshGran"), ("conveyor", "in.conveyor")]
-    {
+    for (name, deck) in [
+        ("packing", "in.packing"),
+        ("meshGran", "in.meshGran"),
+        ("conveyor", "in.conveyor"),
+        ("heatTransfer_1", "in.heatGran"),
+        ("heatTransfer_2", "in.heatGran"),
+    ] {
         let Some(there) = copy(name) else { return };
+        if deck == "in.heatGran" {
+            let text = fs::read_to_string(there.path().join(deck)).unwrap();
+            let text = text.replace("20000 upto", "12000 upto").replace("50000 upto", "16000 upto");
+            fs::write(there.path().join(deck), text).unwrap();
+        }
         let out = perigrain(there.path(), &["translate", deck, "-o", "in.native"]);
         assert!(out.status.success(), "{}", printed(&out));
         let both = [deck, "in.native"]

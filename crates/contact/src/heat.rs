@@ -32,9 +32,9 @@ pub enum Heat {
 pub enum Area {
     /// The circle in which the spheres intersect, after δ is multiplied by this factor.
     Overlap(f64),
-    /// `projection`: π times the square of the larger radius; on walls the circle.
+    /// `projection`: π times the square of the larger radius; on walls the circle (measured with LIGGGHTS 3.8.0).
     Projection,
-    /// `constant A`.
+    /// `constant A`; on walls the circle (measured with LIGGGHTS 3.8.0).
     Constant(f64),
 }
 
@@ -72,12 +72,12 @@ impl Heat {
             Heat::Contact { conductivity, area } => {
                 let deep = g.overlap.most(a.like(0.0));
                 let area = match area {
-                    Area::Constant(area) => a.like(area),
+                    Area::Constant(area) if !on_wall => a.like(area),
                     Area::Projection if !on_wall => {
                         let largest = g.radii[0].most(g.radii[1]);
                         largest * largest * PI
                     }
-                    Area::Projection => circle(g, deep, on_wall),
+                    Area::Constant(_) | Area::Projection => circle(g, deep, on_wall),
                     Area::Overlap(factor) => circle(g, deep * factor, on_wall),
                 };
                 area.sqrt() * (2.0 * conductivity)

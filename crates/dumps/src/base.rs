@@ -16,7 +16,7 @@ use perigrain_output::dump::{Data, Target, sort_rows};
 use perigrain_output::file::{Pattern, trouble};
 use perigrain_output::image::View;
 use perigrain_output::movie::Movie;
-use perigrain_output::vtu::Series;
+use perigrain_output::vtu::{self, Series};
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
 use perigrain_styles::step_op::StepOp;
 use perigrain_styles::words::Words;
@@ -379,7 +379,9 @@ impl Base {
         let path = state.target.pattern.at(step);
         state.kept.push_back(path);
         while state.kept.len() > most {
-            if let Some(old) = state.kept.pop_front() {
+            let old = state.kept.pop_front();
+            let piece = old.as_deref().and_then(vtu::piece);
+            for old in [old, piece].into_iter().flatten() {
                 perigrain_base::gate::remove(&old).map_err(|e| trouble("delete", &old, &e))?;
             }
         }

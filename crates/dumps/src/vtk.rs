@@ -1,7 +1,8 @@
-//! Dump `vtk`: `.vtu` files with a `.pvd` time series, or legacy `.vtk` files, for ParaView and PyVista.
+//! Dump `vtk`: `.vtu` or `.vtp` files with a `.pvd` time series, or legacy `.vtk` files, for ParaView and PyVista.
 
 use super::attribute::{Attribute, Core, Source, expand};
-use super::base::{Base, Common, Files, OfFile, OfParticles, Shot, foreign};
+use super::base::{Base, Common, Files, OfFile, OfParticles, Shot, column, foreign};
+use super::columns::{Renamed, Usual};
 use super::{Dump, DumpStyle, MODIFY, legacy};
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_base::par;
@@ -10,7 +11,7 @@ use perigrain_output::dump::Data;
 use perigrain_output::formats::Kind;
 use perigrain_output::vtu::{self, Array, Series, Storage, Values};
 use perigrain_plan::Op;
-use perigrain_styles::words::{self, At, Form, Syntax, Value, Words, read, read_or};
+use perigrain_styles::words::{self, At, Form, Or, Syntax, Value, Words, read, read_or};
 use perigrain_styles::{BuildCx, Doc, SealCx, Style};
 
 /// The style.
@@ -31,8 +32,11 @@ impl Style for Vtk {
                    `f`, `omegax …` is `omega`, `tqx …` is `tq`, `ix …` is `i`, `xu …` is `unwrapped`, and `c_ID[1] c_ID[2] \
                    c_ID[3]` is `c_ID`. Every point is a vertex cell; the field `TIME` holds the simulated time. Beside the \
                    snapshots stands a list `NAME.pvd` with their times, rewritten after each snapshot; open that one in \
-                   ParaView. A name that ends in `.vtk` makes legacy text files instead, without a list; `.vtu` holds appended raw \
-                   data in zlib blocks made on all threads.",
+                   ParaView.\n\n\
+                   The name's ending chooses the format. `.vtu` (an unstructured grid) and `.vtp` (polygonal data) hold appended raw data \
+                   in zlib blocks made on all threads. `.pvtu` and `.pvtp` are lists of pieces, as programs on several processes \
+                   write them; there is one piece, `NAME_0.vtu` or `NAME_0.vtp`. `.vtk` makes legacy text files, without a list of \
+                   times.",
             example: "dump v all vtk 500 plate_*.vtu id type vx vy vz c_damage",
         }
     }
@@ -50,10 +54,14 @@ struct Line {
 impl DumpStyle for Vtk {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Dump>> {
         let Line { target: OfFile { file }, attributes } = read(args, cx)?;
-        let base = Base::new(Files { endings: &[".vtu", ".vtk"], ..Files::any("vtk") }, &file, cx)?;
+        let base = Base::new(
+            Files { endings: &[".vtu", ".vtk", ".vtp", ".pvtu", ".pvtp"], ..Files::any("vtk") },
+            &file,
+            cx,
+        )?;
         base.needs_star(attributes.first().map_or(file.span, |word| word.span), cx)?;
         let attributes = attributes.iter().map(|word| expand(word, cx)).collect::<Result<Vec<_>>>()?.concat();
-        Ok(Box::new(Declared { base, attributes, storage: Storage::default(), single: false }))
+        Ok(Box::new(Declared { base, attributes, names: vec![], storage: Storage::default(), single: false }))
     }
 }
 
@@ -61,6 +69,8 @@ impl DumpStyle for Vtk {
 struct Declared {
     base: Base,
     attributes: Vec<Attribute>,
+    /// Names of arrays set by `colname`, by their first attribute.
+    names: Vec<(usize, String)>,
     storage: Storage,
     single: bool,
 }
@@ -68,18 +78,36 @@ struct Declared {
 impl Dump for Declared {
     fn op(&self, cx: &mut dyn SealCx, every: i64) -> Result<Box<dyn Op>> {
         let dump = self.clone();
-        let columns = group(&self.attributes);
+        let mut columns = group(&self.attributes);
+        for (first, name) in &self.names {
+            let own = columns.iter_mut().filter(|column| column.first == *first);
+            own.for_each(|column| column.name.clone_from(name));
+        }
         self.base.seal(cx, every, &self.attributes, move |shot| dump.write(shot, &columns, every))
     }
 
     fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
         let ((common, particles), own): ((Common, OfParticles), Own) = read_or(args, cx, foreign)?;
         if let Some(At { span, .. }) = own.binary.filter(|b| !b.value) {
-            let text = "dump_modify binary no: .vtu files are always binary";
+            let text = "dump_modify binary no: .vtu and .vtp files are always binary";
             let d = Diagnostic::error(Code::NOT_SUPPORTED, span, text);
             return Err(d.help("use `dump custom` for text").into());
         }
         self.storage = own.compress.map_or(self.storage, |c| c.0);
+        for name in own.colname {
+            match name {
+                Or::Word(Usual::Default) => self.names.clear(),
+                Or::Else(Renamed { column: word, name }) => {
+                    let k = column(&word, self.attributes.iter().map(|a| a.word.as_str()))?;
+                    if !group(&self.attributes).iter().any(|column| column.first == k) {
+                        let text = format!("`{}` is part of a vector", word.text);
+                        let d = Diagnostic::error(Code::CONFLICT, word.span, text);
+                        return Err(d.help("give the name to the first of the three").into());
+                    }
+                    self.names.push((k, name));
+                }
+            }
+        }
         self.single = own.precision.map_or(self.single, |p| p == Precision::Single);
         self.base.modify(common, cx)?;
         self.base.select(particles, cx)
@@ -101,6 +129,9 @@ struct Own {
     compress: Option<Compress>,
     #[word(keyword, shown = "double")]
     precision: Option<Precision>,
+    /// The name of an array, by its attribute or the first of three; `default` gives all their own names again.
+    #[word(keyword, name = "title", what = "an attribute or default")]
+    colname: Vec<Or<Usual, Renamed>>,
 }
 
 /// How positions and numbers are written.
@@ -216,7 +247,12 @@ impl Declared {
             let text = legacy::text(time, &fill(rows, |i| x[i]), &arrays);
             return state.target.write(shot.step, |to| to.write_all(text.as_bytes()));
         }
-        vtu::write(&path, time, points.values(self.single), &arrays, self.storage)?;
+        let points = points.values(self.single);
+        let piece = vtu::piece(&path);
+        vtu::write(piece.as_ref().unwrap_or(&path), time, points, &arrays, self.storage)?;
+        if let Some(piece) = &piece {
+            vtu::write_list(&path, piece, points, &arrays)?;
+        }
         if every == 0 {
             return Ok(());
         }

@@ -25,7 +25,7 @@ impl Style for PropertyAtomFix {
         Doc {
             syntax: Syntax::Behind(Line::GRAMMAR),
             summary: "Gives all particles properties of the deck's own.",
-            text: "Properties are 0 at first, belong to all particles whatever the group, and are set by `set … d_NAME \
+            text: "Properties are 0 or `initial` at first, belong to all particles whatever the group, and are set by `set … d_NAME \
                    value` (or `d2_NAME[k]`). Read them with `compute property/atom`, in `dump custom`, `fix \
                    store/state` and in formulas (`d_NAME`, `d_NAME[7]`; without columns). `temperature` and `heatflow` \
                    are what granular contacts that conduct heat read and write, and `fix heat/flow` integrates.\n\n\
@@ -49,6 +49,10 @@ struct Line {
     /// Whether `write_data` writes them.
     #[word(keyword, what = "writedata", default = true)]
     writedata: bool,
+    /// What all of them are at first, and for particles that join later, from `create_atoms`, `fix pour`, `fix insert` and all others;
+    /// not the heat flow, and not molecule IDs. Properties that `read_restart` has brought stay. Not in LAMMPS.
+    #[word(keyword, name = "V", what = "the initial value", once, placed, shown = "0")]
+    initial: Option<At<f64>>,
 }
 
 /// The columns of the names of a line, which may stand behind keywords as well.
@@ -98,7 +102,7 @@ impl Words for Names {
 
 impl FixStyle for PropertyAtomFix {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
-        let Line { names: Names(names), ghost, writedata: written } = read(args, cx)?;
+        let Line { names: Names(names), ghost, writedata: written, initial } = read(args, cx)?;
         if let Some(ghost) = ghost {
             cx.note(Diagnostic::note(Code::NO_EFFECT, ghost.span, "without effect: there are no ghosts"));
         }
@@ -108,7 +112,29 @@ impl FixStyle for PropertyAtomFix {
         let column =
             |name: &String| (name != MOLECULE).then(|| PROPERTIES.key(&format!("{BEGIN}{}/{name}", cx.id)));
         let columns = names.iter().map(column).collect();
-        Ok(Box::new(Declared(Properties { fix: cx.id.to_string(), names, columns, written })))
+        let initial = initial.map(|at| begins(&names, &at)).transpose()?;
+        let properties = Properties { fix: cx.id.to_string(), names, columns, written };
+        Ok(Box::new(Declared { properties, initial }))
+    }
+}
+
+/// Whether a property may have a value at first.
+fn can_begin(name: &str) -> bool {
+    name != MOLECULE && name != HEATFLOW.text()
+}
+
+/// The value that the properties of a line have at first.
+fn begins(names: &[String], At { value, span, .. }: &At<f64>) -> Result<f64> {
+    let wrong = |text: String| fail(Code::BAD_VALUE, *span, text);
+    if !names.iter().any(|name| can_begin(name)) {
+        return wrong("no property of this line has an initial value".into());
+    }
+    if names.iter().any(|name| name == TEMPERATURE.text()) && *value < 0.0 {
+        return wrong(format!("a temperature is not negative, {value} is"));
+    }
+    match names.iter().find(|name| name.starts_with('i')) {
+        Some(name) if value.fract() != 0.0 => wrong(format!("`{name}` holds whole numbers, not {value}")),
+        _ => Ok(*value),
     }
 }
 
@@ -184,25 +210,33 @@ fn free(word: &Word, cx: &BuildCx, before: &[String], key: &str) -> Result<()> {
 }
 
 #[derive(Clone)]
-struct Declared(Properties);
+struct Declared {
+    properties: Properties,
+    /// What they are at first, where that is not 0.
+    initial: Option<f64>,
+}
 
 impl Declared {
     fn molecules(&self) -> bool {
-        self.0.names.iter().any(|name| name == MOLECULE)
+        self.properties.names.iter().any(|name| name == MOLECULE)
     }
 
     fn columns(&self) -> impl Iterator<Item = Numbers> {
-        self.0.columns.iter().flatten().copied()
+        self.properties.columns.iter().flatten().copied()
     }
 }
 
 impl Fix for Declared {
     fn declare(&self, w: &mut World) -> Result<()> {
         let n = w.n();
-        for column in self.columns() {
-            w.columns.scalar(column, n);
+        for (name, column) in self.properties.names.iter().zip(&self.properties.columns) {
+            match (column, self.initial) {
+                (Some(column), Some(value)) if can_begin(name) => w.columns.start(*column, n, value),
+                (Some(column), _) => _ = w.columns.scalar(*column, n),
+                (None, _) => {}
+            }
         }
-        w.properties.push(self.0.clone());
+        w.properties.push(self.properties.clone());
         if self.molecules() {
             w.particles.style.molecules = true;
             w.particles.molecule.resize(n, 0);
@@ -215,7 +249,7 @@ impl Fix for Declared {
             w.particles.style.molecules = w.particles.style.bonded;
             w.particles.molecule.clear();
         }
-        w.properties.retain(|p| p.fix != self.0.fix);
+        w.properties.retain(|p| p.fix != self.properties.fix);
         self.columns().for_each(|column| w.columns.remove(column));
     }
 
@@ -251,5 +285,35 @@ mod tests {
         for words in ["", "d_b", "x_b", "d_", "d_a d_a", "d2_c", "d2_c 0", "q", "ghost maybe", "d_a-b"] {
             assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
         }
+        for words in [
+            "i_a initial 0.5",
+            "temperature initial -1",
+            "heatflow initial 3",
+            "d_c initial",
+            "d_c initial 1 initial 2",
+        ] {
+            assert!(b.fix(&PropertyAtomFix, words).is_err(), "{words}");
+        }
+    }
+
+    #[test]
+    fn particles_that_join_begin_with_the_initial_value() {
+        let mut b = Bench::new(AtomStyle::default(), &[[0.0; 3]; 2]);
+        let fix = b.fix(&PropertyAtomFix, "temperature heatflow i_a initial 300").unwrap();
+        fix.declare(&mut b.world).unwrap();
+        let keys =
+            ["temperature", "heatflow", "i_a"].map(|name| Key::new(&format!("property/atom/f/{name}")));
+        let now = |b: &Bench| keys.map(|key| b.world.columns.get_scalar(key).unwrap().to_vec());
+        assert_eq!(now(&b), [[300.0; 2], [0.0; 2], [300.0; 2]]);
+        b.world.columns.scalar(keys[0], 2)[1] = 800.0;
+        b.world.columns.resize(3);
+        assert_eq!(now(&b)[..2], [[300.0, 800.0, 300.0], [0.0; 3]]);
+        // What a restart file has brought stays.
+        fix.declare(&mut b.world).unwrap();
+        assert_eq!(now(&b)[0], [300.0, 800.0, 300.0]);
+        fix.remove(&mut b.world);
+        b.world.columns.scalar(keys[0], 3);
+        b.world.columns.resize(4);
+        assert_eq!(b.world.columns.get_scalar(keys[0]).unwrap(), [0.0; 4]);
     }
 }

@@ -49,7 +49,7 @@ impl Translator {
             for j in i..types {
                 let mut line = Line::new(&cmd, "pair_coeff");
                 line.put(&format!("{} {}", i + 1, j + 1), cmd.name.span);
-                self.law(&mut line, &given, i, j)?;
+                self.law(&mut line, &given, (i, j), true)?;
                 lines.push(line.done());
             }
         }
@@ -57,8 +57,14 @@ impl Translator {
         Ok(lines)
     }
 
-    /// The law of a pair of atom types, counted from 0.
-    pub(crate) fn law(&mut self, line: &mut Line, given: &Given, i: usize, j: usize) -> Result<()> {
+    /// The law of a pair of atom types, counted from 0, with what it conducts if that is `warm`.
+    pub(crate) fn law(
+        &mut self,
+        line: &mut Line,
+        given: &Given,
+        (i, j): (usize, usize),
+        warm: bool,
+    ) -> Result<()> {
         let (model, reader) = (&given.model, &given.reader);
         if model.is_stiffness() {
             self.springs(line, given, i, j)?;
@@ -93,6 +99,9 @@ impl Translator {
             line.put(if model.reduce { "reduce" } else { "" }, given.cohesion);
         }
         line.put(if model.limit { "limit_damping" } else { "" }, given.normal);
+        if warm {
+            self.conduction(line, model, i, j)?;
+        }
         if i != j && !model.is_stiffness() {
             let (e, nu) = (self.of("youngsModulus", reader, j, j)?, self.of("poissonsRatio", reader, j, j)?);
             line.put("material", given.normal).word(&e).word(&nu);

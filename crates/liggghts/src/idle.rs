@@ -64,6 +64,9 @@ impl Translator {
     pub(crate) fn unfix(&mut self, cmd: &Command) -> Option<Vec<Command>> {
         let id = &cmd.args.first()?.text;
         self.surfaces.remove(id);
+        if self.heat.as_ref().is_some_and(|heat| heat.id() == id) {
+            (self.heat, self.written) = (None, None);
+        }
         if !self.own.remove(id) {
             return None;
         }

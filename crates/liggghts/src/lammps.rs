@@ -13,6 +13,10 @@ pub(crate) fn line(cmd: &Command) -> Result<String, &'static str> {
         ("mixture", _) => Err("distributions of sizes stand in fix pour"),
         ("fix", "surface" | "wall/mesh") => Err("LAMMPS has no walls of triangles"),
         ("fix", "insert") => Err("fix pour and fix deposit insert otherwise"),
+        ("fix", "property/atom") if cmd.args.iter().any(|w| w.text == "initial") => {
+            Err("`set` gives temperatures there, also to new particles")
+        }
+        ("fix", "heat/flow") if cmd.args.iter().any(|w| w.text == "source") => Err("no sources of heat"),
         ("fix", "dt/grain") => Err("no check of the time step"),
         ("fix", "wall/gran") if cmd.args.iter().any(|w| w.text == "coeff") => {
             Err("write the law of the wall behind `wall/gran granular`")
@@ -30,6 +34,9 @@ fn coefficients(cmd: &Command) -> Result<String, &'static str> {
     }
     if has("cohesion") {
         return Err("no such cohesion");
+    }
+    if has("heat") {
+        return Err("no such conduction of heat");
     }
     if has("hooke/velocity") || has("hooke/hysteresis") {
         return Err("no such normal law");

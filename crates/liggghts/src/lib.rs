@@ -9,6 +9,7 @@ mod coefficients;
 mod computes;
 mod contacts;
 mod dumps;
+mod heat;
 mod idle;
 mod insertion;
 mod lammps;
@@ -60,6 +61,12 @@ pub struct Translator {
     templates: BTreeMap<String, mixtures::Template>,
     mixtures: BTreeSet<String>,
     surfaces: BTreeMap<String, meshes::Surface>,
+    /// Conduction of heat.
+    heat: Option<heat::Heat>,
+    /// Computes that show what LIGGGHTS has as properties of fixes: `f_Temp` for `f_Temp[0]`.
+    shown: BTreeSet<String>,
+    /// The deck wants another program: what follows is not looked at.
+    ended: bool,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
     /// Words whose lack of effect has been noted.
@@ -94,6 +101,20 @@ impl Translator {
     /// # Errors
     /// Words that are wrong in LIGGGHTS too, and words without counterpart.
     pub fn line(&mut self, cmd: &Command) -> Result<Outcome> {
+        if self.ended {
+            return Ok(Outcome::Native(vec![]));
+        }
+        let Some((line, more)) = self.with_references(cmd) else { return self.carried(cmd) };
+        let mut lines = match self.carried(&line)? {
+            Outcome::NotMine => vec![line],
+            Outcome::Native(lines) => lines,
+        };
+        lines.extend(more);
+        Ok(Outcome::Native(lines))
+    }
+
+    /// A line whose references are native ones.
+    fn carried(&mut self, cmd: &Command) -> Result<Outcome> {
         let mut before = match cmd.name.text.as_str() {
             "run" | "minimize" | "rerun" | "write_data" => self.before_run(cmd)?,
             "clear" => {
@@ -123,6 +144,7 @@ impl Translator {
                     Some(vec![])
                 }
                 Take::Refused(what, help) => {
+                    self.ended = help == words::PARTNER;
                     let at = cmd.args.get(style_at(entry.command)).filter(|_| !entry.style.is_empty());
                     return Err(reading::without_counterpart(at.unwrap_or(&cmd.name), what, help).into());
                 }
@@ -149,6 +171,11 @@ impl Translator {
         })
     }
 
+    /// A line with native references in place of those to properties of fixes, such as `f_Temp[0]`.
+    pub fn referring(&self, cmd: &Command) -> Option<Command> {
+        self.with_references(cmd).map(|(line, _)| line)
+    }
+
     /// Notes since the last call.
     pub fn take_notes(&mut self) -> Diagnostics {
         std::mem::take(&mut self.notes)
@@ -157,7 +184,8 @@ impl Translator {
     /// What stands before a run: the coefficients, and that grains which leave the box are deleted, unless the deck says otherwise
     /// (LIGGGHTS' default: measured).
     fn before_run(&mut self, cmd: &Command) -> Result<Vec<Command>> {
-        let mut lines = self.coefficients()?;
+        let mut lines: Vec<Command> = self.heat_again()?.into_iter().collect();
+        lines.extend(self.coefficients()?);
         if !std::mem::replace(&mut self.lost, true) && cmd.name.text != "write_data" {
             let mut line = native::Line::new(cmd, "thermo_modify");
             line.put("lost ignore", cmd.name.span);

@@ -11,6 +11,8 @@ use perigrain_lang::{Args, Command, Word};
 pub(crate) struct Surface {
     /// Its atom type.
     pub kind: Word,
+    /// It has a temperature.
+    pub warm: bool,
 }
 
 const KEYWORDS: &[&str] = &[
@@ -169,7 +171,8 @@ impl Translator {
         if !servo.is_empty() {
             line.put("servo", servo[0].span).words(&servo);
         }
-        self.surfaces.insert(cmd.args[0].text.clone(), Surface { kind });
+        let warm = then.iter().any(|word| word.text == "temperature");
+        self.surfaces.insert(cmd.args[0].text.clone(), Surface { kind, warm });
         Ok(Some(vec![line.done()]))
     }
 

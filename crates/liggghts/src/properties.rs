@@ -216,17 +216,28 @@ fn symmetric(name: &Word, values: &[Word], types: usize) -> Result<()> {
     Ok(())
 }
 
-/// `property/atom` with LIGGGHTS' shapes: a native property of the same name.
-pub(crate) fn atom_property(cmd: &Command, args: &mut Args) -> Result<Option<Command>> {
-    let Some(shape) = args.peek_at(1).filter(|w| w.text == "scalar" || w.text == "vector") else {
-        return Ok(None);
-    };
-    let name = args.expect("the name of a property")?.clone();
-    if shape.text == "vector" {
-        let help = "write one scalar property for each component";
-        return Err(without_counterpart(&name, "a property with several values", help).into());
+impl Translator {
+    /// `property/atom NAME scalar …`: a native property of the same name, and a compute that shows it as `f_ID`. Of the words behind
+    /// `scalar` the last one may be the value at first.
+    pub(crate) fn atom_property(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        let Some(shape) = args.peek_at(1).filter(|w| w.text == "scalar" || w.text == "vector") else {
+            return Ok(None);
+        };
+        let name = args.expect("the name of a property")?.clone();
+        if shape.text == "vector" {
+            let help = "write one scalar property for each component";
+            return Err(without_counterpart(&name, "a property with several values", help).into());
+        }
+        let mut line = crate::native::Line::styled(cmd, "property/atom");
+        line.put(&format!("d_{}", name.text), name.span);
+        let first = args.rest().last().filter(|w| is_open(w) || value(w).is_some_and(|x| x != 0.0));
+        if let Some(first) = first {
+            line.put("initial", first.span).word(first);
+        }
+        let id = &cmd.args[0].text;
+        let mut compute = crate::native::Line::new(cmd, "compute");
+        compute.put(&format!("f_{id} all property/atom d_{}", name.text), name.span);
+        self.shown.insert(format!("f_{id}"));
+        Ok(Some(vec![line.done(), compute.done()]))
     }
-    let mut line = crate::native::Line::styled(cmd, "property/atom");
-    line.put(&format!("d_{}", name.text), name.span);
-    Ok(Some(line.done()))
 }

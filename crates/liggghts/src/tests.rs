@@ -1,5 +1,7 @@
 //! Tests of lines as text: what each becomes, and what is refused.
 
+mod heat;
+
 use super::*;
 use perigrain_base::diag::{Code, Diagnostics, FileId};
 

@@ -18,6 +18,8 @@ struct Place {
     /// Native words.
     words: Vec<Word>,
     on_mesh: bool,
+    /// It has a temperature.
+    warm: bool,
 }
 
 /// Whether a `fix wall/gran` line has LIGGGHTS' words.
@@ -35,7 +37,7 @@ impl Translator {
         }
         let mut given = parts(args, &cmd.args[2])?;
         let head = args.expect("`primitive` or `mesh`")?.clone();
-        let place = match head.text.as_str() {
+        let mut place = match head.text.as_str() {
             "primitive" => self.primitive(args)?,
             "mesh" => self.on_meshes(args)?,
             _ => return Err(unknown(&head, "word of a wall", KEYWORDS).into()),
@@ -47,6 +49,7 @@ impl Translator {
                 continue;
             }
             args.next();
+            place.warm |= word.text == "temperature";
             more.extend(self.more(&word, args)?);
         }
         let style = if place.on_mesh { "wall/mesh" } else { "wall/gran" };
@@ -73,7 +76,7 @@ impl Translator {
                 number(args, "the centre of the cylinder")?,
             ]),
         }
-        Ok(Place { kind, words, on_mesh: false })
+        Ok(Place { kind, words, on_mesh: false, warm: false })
     }
 
     /// `mesh n_meshes N meshes ID …`.
@@ -84,9 +87,12 @@ impl Translator {
         choice(args, "word of a wall on meshes", &["meshes"])?;
         let mut words = vec![Word::new("of", head)];
         let mut kinds: Vec<Word> = vec![];
+        let mut warm = false;
         for _ in 0..count {
             let word = args.expect("the ID of a fix mesh/surface")?.clone();
-            kinds.push(self.surface_of(&word)?.kind.clone());
+            let surface = self.surface_of(&word)?;
+            warm |= surface.warm;
+            kinds.push(surface.kind.clone());
             words.push(word);
         }
         if let Some(k) = kinds.iter().position(|kind| kind.text != kinds[0].text) {
@@ -94,7 +100,7 @@ impl Translator {
             let d = Diagnostic::error(Code::NO_COUNTERPART, words[k + 1].span, text);
             return Err(d.help("write one `fix wall/gran` for the surfaces of each type").into());
         }
-        Ok(Place { kind: kinds.swap_remove(0), words, on_mesh: true })
+        Ok(Place { kind: kinds.swap_remove(0), words, on_mesh: true, warm })
     }
 
     /// What may follow the place of a wall.
@@ -151,6 +157,7 @@ impl Translator {
                 (model.tangential != Tangential::Off, "tangential", given.tangential),
                 (model.rolling != Rolling::Off, "rolling", given.rolling),
                 (model.cohesion != Cohesion::Off, "cohesion", given.cohesion),
+                (place.warm, "heat", at),
             ] {
                 line.put(if has { name } else { "" }, at);
             }
@@ -169,8 +176,13 @@ impl Translator {
                 .help("a wall may leave parts of that model out: write the larger one there")
                 .into());
         }
+        if place.warm && self.heat.is_none() {
+            let text = "a wall with a temperature and a model of its own stands above `fix heat/gran`";
+            let d = Diagnostic::error(Code::WRONG_ORDER, given.reader.span, text);
+            return Err(d.help("write `fix heat/gran` first").into());
+        }
         line.put("granular", given.normal);
-        self.law(line, given, 0, 0)
+        self.law(line, given, (0, 0), place.warm)
     }
 }
 

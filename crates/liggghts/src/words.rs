@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, contacts, dumps, idle, old, properties};
+use crate::{Translator, computes, contacts, dumps, idle, old};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -35,7 +35,8 @@ const fn entry(command: &'static str, style: &'static str, mark: bool, take: Tak
 }
 
 const SHAPES: &str = "clumps of spheres: `molecule` and `fix rigid/small`";
-const PARTNER: &str = "`fix external` and the Python module couple another program";
+/// What couples another program: a deck that does so cannot run without it.
+pub(crate) const PARTNER: &str = "`fix external` and the Python module couple another program";
 const FLUID: &str = "grains and solids are computed here, no fluid";
 
 /// All of them, by command.
@@ -71,12 +72,7 @@ pub(crate) const TABLE: &[Entry] = &[
         true,
         Take::Lines(|t, cmd, args| t.property(cmd, args).map(|()| Some(vec![]))),
     ),
-    entry(
-        "fix",
-        "property/atom",
-        false,
-        Take::Lines(|_, cmd, args| Ok(properties::atom_property(cmd, args)?.map(|l| vec![l]))),
-    ),
+    entry("fix", "property/atom", false, Take::Lines(|t, cmd, args| t.atom_property(cmd, args))),
     entry(
         "fix",
         "particletemplate/sphere",
@@ -157,13 +153,15 @@ pub(crate) const TABLE: &[Entry] = &[
         true,
         Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
     ),
+    entry("fix", "heat/gran", true, Take::Lines(|t, cmd, args| t.heat(cmd, args))),
+    entry("fix", "heat/gran/conduction", true, Take::Lines(|t, cmd, args| t.heat(cmd, args))),
     entry(
         "fix",
-        "heat/gran*",
+        "heat/gran/*",
         true,
         Take::Refused(
-            "conduction of heat between grains",
-            "native lines: `fix property/atom temperature heatflow`, `fix heat/flow`, `heat` of pair_coeff",
+            "heat that does not flow through contacts",
+            "`fix heat/gran` conducts it, `set … property/atom heatSource` brings it",
         ),
     ),
     entry("fix", "couple/*", false, Take::Refused("a coupling to another program", PARTNER)),
@@ -233,7 +231,7 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Refused("a wedge", "`region intersect` of a cylinder and prisms or blocks"),
     ),
-    entry("set", "", false, Take::Lines(|_, cmd, _| computes::set(cmd))),
+    entry("set", "", false, Take::Lines(|t, cmd, _| t.set(cmd))),
     entry("run", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("thermo", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("unfix", "", false, Take::Lines(|t, cmd, _| Ok(t.unfix(cmd)))),

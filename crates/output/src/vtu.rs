@@ -1,4 +1,5 @@
-//! `.vtu` files: points with data, appended raw, zlib blocks compressed in parallel; `.pvd` time series.
+//! `.vtu` and `.vtp` files: points with data, appended raw, zlib blocks compressed in parallel; lists of pieces `.pvtu` and `.pvtp`, and
+//! `.pvd` time series.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -149,8 +150,78 @@ impl Source<'_> {
     }
 }
 
-/// Writes points with data at a time to a file that appears whole or not at all. All arrays have one entry
-/// per point.
+/// The kind of data set that the points are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grid {
+    /// `.vtu`: an unstructured grid of vertex cells.
+    Unstructured,
+    /// `.vtp`: polygonal data of vertices.
+    Poly,
+}
+
+impl Grid {
+    /// That of files with this name, or of the pieces of a list with this name.
+    pub fn of(path: &Path) -> Self {
+        match ending(path) {
+            "vtp" | "pvtp" => Self::Poly,
+            _ => Self::Unstructured,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Unstructured => "UnstructuredGrid",
+            Self::Poly => "PolyData",
+        }
+    }
+
+    /// The numbers of points and cells, one for each point.
+    fn counts(self, n: usize) -> String {
+        match self {
+            Self::Unstructured => format!("NumberOfPoints=\"{n}\" NumberOfCells=\"{n}\""),
+            Self::Poly => {
+                let none = "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"";
+                format!("NumberOfPoints=\"{n}\" NumberOfVerts=\"{n}\" {none}")
+            }
+        }
+    }
+}
+
+fn ending(path: &Path) -> &str {
+    path.extension().and_then(|end| end.to_str()).unwrap_or_default()
+}
+
+/// The file of points that belongs to a list of pieces `NAME.pvtu` or `NAME.pvtp`: `NAME_0.vtu` or `NAME_0.vtp`.
+pub fn piece(path: &Path) -> Option<PathBuf> {
+    let end = ending(path).strip_prefix('p').filter(|end| ["vtu", "vtp"].contains(end))?;
+    let name = path.file_stem()?.to_str()?;
+    Some(path.with_file_name(format!("{name}_0.{end}")))
+}
+
+/// Writes a list of one piece, which [`write`] has written.
+pub fn write_list(path: &Path, piece: &Path, points: Values<'_>, arrays: &[Array<'_>]) -> Result<()> {
+    let name = format!("P{}", Grid::of(path).name());
+    let entry = |name: &str, values: &Values<'_>| {
+        let parts = match values.components() {
+            1 => String::new(),
+            parts => format!(" NumberOfComponents=\"{parts}\""),
+        };
+        format!("      <PDataArray type=\"{}\" Name=\"{}\"{parts}/>\n", values.kind(), escape(name))
+    };
+    let data: String = arrays.iter().map(|array| entry(array.name, &array.values)).collect();
+    let source = piece.file_name().unwrap_or_default().to_string_lossy();
+    let xml = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{name}\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\">\n  <{name} GhostLevel=\"0\">\n    <PPointData>\n{data}    </PPointData>\n    <PPoints>\n{}    \
+         </PPoints>\n    <Piece Source=\"{}\"/>\n  </{name}>\n</VTKFile>\n",
+        entry("Points", &points),
+        escape(&source)
+    );
+    file::replace(path, |w| w.write_all(xml.as_bytes()))
+}
+
+/// Writes points with data at a time to a file that appears whole or not at all; its ending says which kind of data set they are. All
+/// arrays have one entry per point.
 pub fn write(
     path: &Path,
     time: f64,
@@ -159,6 +230,7 @@ pub fn write(
     storage: Storage,
 ) -> Result<()> {
     let n = points.size() / if points.kind() == "Float32" { 12 } else { 24 };
+    let grid = Grid::of(path);
     let mut body: Vec<Vec<u8>> = vec![];
     let mut offset = 0;
     let mut outcome = Ok(());
@@ -178,23 +250,28 @@ pub fn write(
         line
     };
     let values = |v| Source::Values(v);
+    let name = grid.name();
     let compressor = if storage.compress { " compressor=\"vtkZLibDataCompressor\"" } else { "" };
     let mut xml = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
-         header_type=\"UInt64\"{compressor}>\n  <UnstructuredGrid>\n    <FieldData>\n      \
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"{name}\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\"{compressor}>\n  <{name}>\n    <FieldData>\n      \
          <DataArray type=\"Float64\" Name=\"TIME\" NumberOfTuples=\"1\" format=\"ascii\">{time:?}</DataArray>\n    \
-         </FieldData>\n    <Piece NumberOfPoints=\"{n}\" NumberOfCells=\"{n}\">\n      <PointData>\n"
+         </FieldData>\n    <Piece {}>\n      <PointData>\n",
+        grid.counts(n)
     );
     for a in arrays {
         xml += &entry(a.name, a.values.kind(), a.values.components(), &values(a.values));
     }
     xml += "      </PointData>\n      <Points>\n";
     xml += &entry("Points", points.kind(), 3, &values(points));
-    xml += "      </Points>\n      <Cells>\n";
+    let cells = if grid == Grid::Poly { "Verts" } else { "Cells" };
+    xml += &format!("      </Points>\n      <{cells}>\n");
     xml += &entry("connectivity", "Int32", 1, &Source::Counting { from: 0, count: n });
     xml += &entry("offsets", "Int32", 1, &Source::Counting { from: 1, count: n });
-    xml += &entry("types", "UInt8", 1, &Source::Vertices(n));
-    xml += "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
+    if grid == Grid::Unstructured {
+        xml += &entry("types", "UInt8", 1, &Source::Vertices(n));
+    }
+    xml += &format!("      </{cells}>\n    </Piece>\n  </{name}>\n  <AppendedData encoding=\"raw\">\n_");
     outcome.map_err(|e| file::trouble("compress", path, &e))?;
     file::replace(path, |w| {
         w.write_all(xml.as_bytes())?;
@@ -254,6 +331,29 @@ mod tests {
         let bytes = Source::Values(Values::F64(&d)).appended(Storage::default()).unwrap();
         let word = |k: usize| u64::from_le_bytes(bytes[8 * k..8 * k + 8].try_into().unwrap()) as usize;
         assert_eq!([word(0), word(1), word(2)], [2, BLOCK, 0]);
+    }
+
+    #[test]
+    fn a_list_names_its_piece() {
+        let dir = tempfile::tempdir().unwrap();
+        for (list, own, kind) in
+            [("a_10.pvtp", "a_10_0.vtp", "PPolyData"), ("b.2.pvtu", "b.2_0.vtu", "PUnstructuredGrid")]
+        {
+            let (path, own) = (dir.path().join(list), dir.path().join(own));
+            assert_eq!(piece(&path).as_deref(), Some(&*own));
+            let arrays = [Array { name: "f_Temp[0]", values: Values::F64(&[300.0]) }];
+            write_list(&path, &own, Values::Vectors(&[[0.0; 3]]), &arrays).unwrap();
+            let text = std::fs::read_to_string(&path).unwrap();
+            for part in [
+                format!("<VTKFile type=\"{kind}\""),
+                format!("<Piece Source=\"{}\"/>", own.file_name().unwrap().to_str().unwrap()),
+                "<PDataArray type=\"Float64\" Name=\"f_Temp[0]\"/>".into(),
+                "<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>".into(),
+            ] {
+                assert!(text.contains(&part), "{part}: {text}");
+            }
+        }
+        assert_eq!((piece(Path::new("a.vtu")), piece(Path::new("a.pvd"))), (None, None));
     }
 
     #[test]

@@ -50,12 +50,22 @@ impl Level {
 pub struct Columns {
     scalars: Named<Vec<f64>>,
     vectors: Named<Vec<[f64; 3]>>,
+    /// What particles that join have in a scalar column, where that is not 0: lines of a deck say it.
+    #[serde(skip)]
+    starts: Vec<(Numbers, f64)>,
 }
 
 impl Columns {
     /// The scalar column of this name, made of zeros for `n` particles if it is new.
     pub fn scalar(&mut self, key: Numbers, n: usize) -> &mut Vec<f64> {
         self.scalars.get_or(key, || vec![0.0; n])
+    }
+
+    /// Gives the particles of a new scalar column this value, and those that join later; a column that is there keeps its numbers.
+    pub fn start(&mut self, key: Numbers, n: usize, value: f64) {
+        self.scalars.get_or(key, || vec![value; n]);
+        self.starts.retain(|(other, _)| *other != key);
+        self.starts.push((key, value));
     }
 
     /// The vector column of this name, made of zeros for `n` particles if it is new.
@@ -128,6 +138,7 @@ impl Columns {
     pub fn remove<T>(&mut self, key: Key<T>) {
         self.scalars.remove(key.of());
         self.vectors.remove(key.of());
+        self.starts.retain(|(other, _)| *other != key.of());
     }
 
     /// Lets two scalar columns change places, each made of zeros for `n` particles if it is new.
@@ -175,9 +186,13 @@ impl Columns {
         self.scalars.values().all(|c| c.len() == n) && self.vectors.values().all(|c| c.len() == n)
     }
 
-    /// Gives every column room for `n` particles, zeros for new ones.
+    /// Gives every column room for `n` particles: zeros for new ones, or what they [start](Self::start) with.
     pub fn resize(&mut self, n: usize) {
-        self.scalars.values_mut().for_each(|c| c.resize(n, 0.0));
+        let starts = &self.starts;
+        for (key, column) in self.scalars.iter_mut().filter(|(_, column)| column.len() != n) {
+            let start = starts.iter().find(|(other, _)| *other == key).map_or(0.0, |(_, value)| *value);
+            column.resize(n, start);
+        }
         self.vectors.values_mut().for_each(|c| c.resize(n, [0.0; 3]));
     }
 

@@ -38,6 +38,9 @@ const TEXT: &str = "A deck with a word that only LIGGGHTS has (`atom_style granu
     - `particletemplate/sphere` with `particledistribution/discrete`: `mixture`, with shares of the mass, or of the number behind \
     `/numberbased`;\n\
     - `insert/pack`, `insert/rate/region`, `insert/stream`: `fix insert` with `pack`, `rate`, `stream`;\n\
+    - `heat/gran`, `heat/gran/conduction`: `fix property/atom temperature initial T`, `fix heat/flow … source`, and `heat contact` of \
+    pair_coeff; `set … property/atom Temp|heatSource` sets these properties, `f_Temp[0]`, `f_heatFlux[0]`, `f_heatSource[0]` are \
+    computes;\n\
     - `check/timestep/gran`: `fix dt/grain`; `dump custom/vtk`: `dump vtk`; `dump mesh/gran/VTK`: `dump mesh/vtk`;\n\
     - walls, `pour` and pair styles with numbers, as before LIGGGHTS 3: those of LAMMPS.\n\n\
     Words about processes and neighbour lists have a note that they change nothing. Words without counterpart (superquadrics, \

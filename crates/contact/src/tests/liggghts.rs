@@ -335,6 +335,10 @@ fn heat_flows_through_the_area_of_contact() {
             conductance(contact(Area::Projection), &pair([0.004, 0.006], 1e-5), false),
             1_063.472_310_54 / 500.0,
         ),
+        // 2 k √A; walls have the circle with `constant` and `projection` (3.8.0: 50.1012228415 W in both).
+        (conductance(contact(Area::Constant(1e-6)), &g, false), 0.2),
+        (conductance(contact(Area::Constant(1e-6)), &wall(0.004, 1e-5), true), 50.101_222_841_5 / 500.0),
+        (conductance(contact(Area::Projection), &wall(0.004, 1e-5), true), 50.101_222_841_5 / 500.0),
     ] {
         assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
     }

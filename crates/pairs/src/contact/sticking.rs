@@ -108,7 +108,7 @@ enum Areas {
     Overlap,
     /// π times the square of the larger radius; on walls the circle.
     Projection,
-    /// A itself.
+    /// A itself; on walls the circle.
     Constant(#[word(name = "A", what = "the area", positive)] f64),
 }
 

@@ -135,14 +135,9 @@ struct Warmth {
 impl Warmth {
     /// For a wall with a temperature.
     fn new(common: &Common, conducts: bool, cx: &mut dyn SealCx) -> Result<Option<Self>> {
-        let Some((wall, _)) = &common.temperature else {
-            if !conducts {
-                return Ok(None);
-            }
-            let text = "contacts conduct heat, but the wall has no temperature";
-            let d = Diagnostic::error(Code::INCOMPLETE, common.material.span, text);
-            return Err(d.help("add `temperature T`, or `only …` without `heat` behind `coeff T`").into());
-        };
+        // Contacts that have their law from coefficients conduct no heat to a wall without a temperature; a law of the wall's own with heat
+        // is refused without one.
+        let Some((wall, _)) = &common.temperature else { return Ok(None) };
         if !conducts {
             return Ok(None);
         }

@@ -38,7 +38,8 @@ pub const FORCE: Kind = Kind::Choice(&[
     ),
     style(
         "coeff",
-        "The laws of `pair_coeff` between each type of grains and type T, in `pair_style granular`; arms of friction are R − δ/2.",
+        "The laws of `pair_coeff` between each type of grains and type T, in `pair_style granular`; arms of friction are R − δ/2. Without \
+         `temperature` no heat flows through the wall.",
         &[Part::All(Lent::GRAMMAR)],
     ),
     style("hooke", "The force of `pair_style gran/hooke`.", CLASSIC),
@@ -54,7 +55,7 @@ pub struct Rest {
     #[word(flag)]
     contacts: bool,
     /// The temperature of the wall [temperature], a number or an equal-style variable, for a model of heat: h π a² (T_wall − T)
-    /// flows into a grain (`heat area h`), or 2 k a (T_wall − T).
+    /// flows into a grain (`heat area h`), 2 k a (T_wall − T), or 2 k √A (T_wall − T).
     #[word(keyword, name = "T", placed)]
     temperature: Option<At<Param>>,
     /// Elastic constants of the wall's own, for 1/E* and 1/G* of two unlike bodies; not in LAMMPS.
