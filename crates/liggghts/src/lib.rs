@@ -19,6 +19,7 @@ mod native;
 mod old;
 mod properties;
 mod reading;
+mod regions;
 mod rewrite;
 mod walls;
 mod words;

@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, contacts, dumps, idle, old, properties};
+use crate::{Translator, computes, contacts, dumps, idle, old, properties, regions};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -221,18 +221,8 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Refused("a picture of contacts", "`dump local` with `compute pair/local`"),
     ),
     entry("dump_modify", "", false, Take::Lines(|_, cmd, _| Ok(dumps::modified(cmd)))),
-    entry(
-        "region",
-        "mesh/tet",
-        false,
-        Take::Refused("a region of tetrahedra", "`region mesh` with the closed surface as STL"),
-    ),
-    entry(
-        "region",
-        "wedge",
-        false,
-        Take::Refused("a wedge", "`region intersect` of a cylinder and prisms or blocks"),
-    ),
+    entry("region", "mesh/tet", false, Take::Lines(|t, cmd, args| t.tetrahedra(cmd, args).map(Some))),
+    entry("region", "wedge", false, Take::Lines(|_, cmd, args| regions::wedge(cmd, args).map(Some))),
     entry("set", "", false, Take::Lines(|_, cmd, _| computes::set(cmd))),
     entry("run", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("thermo", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
