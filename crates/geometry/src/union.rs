@@ -45,13 +45,15 @@ impl Union {
         let unit = 1.0 / reach;
         let balls: Vec<(Vec3, f64)> =
             places.iter().zip(radii).map(|(x, r)| (scale(unit, sub(*x, middle)), unit * r)).collect();
-        let body = Slices { balls, weight: 4.0 / 3.0 * PI * radii.iter().map(|r| (unit * r).powi(3)).sum::<f64>() };
+        let body =
+            Slices { balls, weight: 4.0 / 3.0 * PI * radii.iter().map(|r| (unit * r).powi(3)).sum::<f64>() };
         let sums = body.integral();
         let [volume, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
         let [x, y, z] = [x, y, z].map(|a| a / volume);
         let central =
             [xx - volume * x * x, yy - volume * y * y, zz - volume * z * z].map(|a| a * reach.powi(5));
-        let mixed = [xy - volume * x * y, xz - volume * x * z, yz - volume * y * z].map(|a| a * reach.powi(5));
+        let mixed =
+            [xy - volume * x * y, xz - volume * x * z, yz - volume * y * z].map(|a| a * reach.powi(5));
         let [a, b, c] = central;
         Some(Self {
             volume: volume * reach.powi(3),
@@ -170,16 +172,20 @@ mod tests {
         assert!((2500.0 * u.inertia[1] / 9.597_606e-8 - 1.0).abs() < 2e-7);
         near(u.inertia[1], u.inertia[2], u.inertia[1]);
         near(u.centre[0], r, r);
-        assert!(u.centre[1].abs() < 1e-12 * r && u.inertia[3..].iter().all(|a| a.abs() < 1e-9 * u.inertia[0]));
+        assert!(
+            u.centre[1].abs() < 1e-12 * r && u.inertia[3..].iter().all(|a| a.abs() < 1e-9 * u.inertia[0])
+        );
     }
 
     // One sphere, the same one twice, one within another, and two apart.
     #[test]
     fn spheres_that_hide_or_do_not_touch() {
         let ball = |r: f64| 4.0 / 3.0 * PI * r.powi(3);
-        for (places, radii) in
-            [(vec![[1.0, 2.0, 3.0]], vec![2.0]), (vec![[1.0, 2.0, 3.0]; 2], vec![2.0; 2]), (vec![[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]], vec![2.0, 0.5])]
-        {
+        for (places, radii) in [
+            (vec![[1.0, 2.0, 3.0]], vec![2.0]),
+            (vec![[1.0, 2.0, 3.0]; 2], vec![2.0; 2]),
+            (vec![[1.0, 2.0, 3.0], [1.5, 2.0, 3.0]], vec![2.0, 0.5]),
+        ] {
             let u = Union::new(&places, &radii).unwrap();
             near(u.volume, ball(2.0), u.volume);
             near(u.inertia[2], 0.4 * ball(2.0) * 4.0, u.inertia[2]);
@@ -208,8 +214,10 @@ mod tests {
         let (a, b) = (full(one.inertia), full(two.inertia));
         for i in 0..3 {
             for j in 0..3 {
-                let sum: f64 =
-                    (0..3).flat_map(|k| (0..3).map(move |l| (k, l))).map(|(k, l)| m[i][k] * a[k][l] * m[j][l]).sum();
+                let sum: f64 = (0..3)
+                    .flat_map(|k| (0..3).map(move |l| (k, l)))
+                    .map(|(k, l)| m[i][k] * a[k][l] * m[j][l])
+                    .sum();
                 near(sum, b[i][j], one.inertia[0]);
             }
         }

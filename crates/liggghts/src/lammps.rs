@@ -13,6 +13,7 @@ pub(crate) fn line(cmd: &Command) -> Result<String, &'static str> {
         ("mixture", _) => Err("distributions of sizes stand in fix pour"),
         ("fix", "surface" | "wall/mesh") => Err("LAMMPS has no walls of triangles"),
         ("fix", "insert") => Err("fix pour and fix deposit insert otherwise"),
+        ("clump", _) => Err("write the spheres into a molecule file, with mass and inertia"),
         ("fix", "dt/grain") => Err("no check of the time step"),
         ("fix", "wall/gran") if cmd.args.iter().any(|w| w.text == "coeff") => {
             Err("write the law of the wall behind `wall/gran granular`")

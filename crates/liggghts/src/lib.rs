@@ -5,6 +5,7 @@
 //!
 //! Source: the manual of LIGGGHTS-PUBLIC 3.8.0; what it leaves open was measured with that program.
 
+mod clumps;
 mod coefficients;
 mod computes;
 mod contacts;
@@ -60,6 +61,7 @@ pub struct Translator {
     written: Option<(u64, usize)>,
     templates: BTreeMap<String, mixtures::Template>,
     mixtures: BTreeSet<String>,
+    movers: clumps::Movers,
     surfaces: BTreeMap<String, meshes::Surface>,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
@@ -158,7 +160,8 @@ impl Translator {
     /// What stands before a run: the coefficients, and that grains which leave the box are deleted, unless the deck says otherwise
     /// (LIGGGHTS' default: measured).
     fn before_run(&mut self, cmd: &Command) -> Result<Vec<Command>> {
-        let mut lines = self.coefficients()?;
+        let mut lines = self.bodies()?;
+        lines.extend(self.coefficients()?);
         if !std::mem::replace(&mut self.lost, true) && cmd.name.text != "write_data" {
             let mut line = native::Line::new(cmd, "thermo_modify");
             line.put("lost ignore", cmd.name.span);

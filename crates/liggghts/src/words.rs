@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, contacts, dumps, idle, old, properties, regions};
+use crate::{Translator, clumps, computes, contacts, dumps, idle, old, properties, regions};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -87,16 +87,16 @@ pub(crate) const TABLE: &[Entry] = &[
         "fix",
         "particletemplate/multisphere",
         true,
-        Take::Refused(
-            "a template of several spheres",
-            "`molecule` with `fix rigid/small`, and `fix pour … mol`",
-        ),
+        Take::Lines(|t, cmd, args| t.clump(cmd, args).map(Some)),
     ),
     entry(
         "fix",
         "particletemplate/multiplespheres*",
         true,
-        Take::Refused("a template of bonded spheres", "`molecule` with bonds, and `fix pour … mol`"),
+        Take::Refused(
+            "a template of bonded spheres",
+            "`molecule` with bonds of `bond_style bpm/beam`, `mixture … mol` and `fix insert`",
+        ),
     ),
     entry(
         "fix",
@@ -151,11 +151,15 @@ pub(crate) const TABLE: &[Entry] = &[
         true,
         Take::Lines(|_, cmd, args| Ok(Some(computes::time_step(cmd, args)))),
     ),
+    entry("fix", "multisphere", true, Take::Lines(|t, cmd, args| t.multisphere(cmd, args).map(Some))),
     entry(
         "fix",
         "multisphere*",
         true,
-        Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
+        Take::Refused(
+            "grains of several spheres that break",
+            "`fix multisphere`, or bonds of `bond_style bpm/beam`",
+        ),
     ),
     entry(
         "fix",
@@ -197,8 +201,11 @@ pub(crate) const TABLE: &[Entry] = &[
         "compute",
         "erotate/multisphere",
         false,
-        Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
+        Take::Lines(|t, cmd, _| t.energy(cmd, "erotate/rigid").map(Some)),
     ),
+    entry("compute", "ke/multisphere", false, Take::Lines(|t, cmd, _| t.energy(cmd, "ke/rigid").map(Some))),
+    entry("compute", "multisphere", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
+    entry("compute", "rigid", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
     entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
     entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
     entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
@@ -209,6 +216,7 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Refused("a table of contacts", "`contacts` behind `fix wall/mesh`, and `dump local`"),
     ),
     entry("dump", "custom/vtk", true, Take::Lines(|_, cmd, args| dumps::custom(cmd, args).map(Some))),
+    entry("dump", "custom", false, Take::Lines(|_, cmd, _| Ok(clumps::dump(cmd)))),
     entry("dump", "mesh/stl", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/stl"))),
     entry("dump", "stl", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/stl"))),
     entry("dump", "mesh/vtk", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/vtk"))),
@@ -227,7 +235,7 @@ pub(crate) const TABLE: &[Entry] = &[
     entry("run", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("thermo", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("unfix", "", false, Take::Lines(|t, cmd, _| Ok(t.unfix(cmd)))),
-    entry("fix_modify", "", false, Take::Lines(|t, cmd, _| Ok(t.fix_modify(cmd)))),
+    entry("fix_modify", "", false, Take::Lines(|t, cmd, _| t.switched(cmd).map(|()| t.fix_modify(cmd)))),
     entry("create_box", "", false, Take::Lines(|t, cmd, _| Ok(t.create_box(cmd)))),
     entry("pair_coeff", "", false, Take::Lines(|t, cmd, _| Ok(t.pair_coeff(cmd)))),
     entry("fix", "wall/mesh", false, Take::Same),

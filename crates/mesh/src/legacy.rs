@@ -25,7 +25,9 @@ pub enum Error {
     NoPoint(usize),
     #[error("it has no points")]
     NoPoints,
-    #[error("cells of type {0} are no faces: triangles, quadrilaterals, polygons, strips and tetrahedra are read")]
+    #[error(
+        "cells of type {0} are no faces: triangles, quadrilaterals, polygons, strips and tetrahedra are read"
+    )]
     Cell(usize),
     #[error("{0} tetrahedra have the face of the points {a} {b} {c}", a = .1[0], b = .1[1], c = .1[2])]
     Shared(usize, [usize; 3]),

@@ -10,7 +10,10 @@ use perigrain_styles::BuildCx;
 use perigrain_styles::triangles;
 
 /// Reads the body in the file of a line; the body, and lines for the log about it.
-pub fn read(Mesh { file, placing, turn: turns, options }: &Mesh, cx: &BuildCx) -> Result<(Solid, Vec<String>)> {
+pub fn read(
+    Mesh { file, placing, turn: turns, options }: &Mesh,
+    cx: &BuildCx,
+) -> Result<(Solid, Vec<String>)> {
     let Some(surface) = triangles::read_faces(file, cx)? else { return Ok((Solid::default(), vec![])) };
     let mut placed = surface.triangles.clone();
     placing.apply(&mut placed, options.units.scales(cx.world));

@@ -133,7 +133,7 @@ impl Pulls {
         let mut force = self.centre.map_or([0.0; 3], |a| scale(mass, a));
         let mut torque = [0.0; 3];
         for (bit, a) in &self.particles {
-            if !members.clone().all(|(.., mask)| mask & bit != 0) {
+            if members.clone().next().is_none() || !members.clone().all(|(.., mask)| mask & bit != 0) {
                 continue;
             }
             let (mut sum, mut lever) = (0.0, [0.0; 3]);

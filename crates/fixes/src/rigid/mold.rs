@@ -23,6 +23,12 @@ pub struct Mold {
 }
 
 impl Mold {
+    /// As the template is now: a mixture may have given it a mass since.
+    pub fn now(&self, w: &World) -> Self {
+        let set = w.templates.get(&self.name).unwrap_or(&self.set).clone();
+        Self { name: self.name.clone(), set }
+    }
+
     /// Whether it gives a value that is not the sum over particles.
     pub fn gives(&self) -> bool {
         self.set.iter().any(gives)

@@ -40,7 +40,8 @@ impl Disc {
         if d >= self.radius + other.radius || d + other.radius <= self.radius {
             return None;
         }
-        let cosine = (d * d + self.radius * self.radius - other.radius * other.radius) / (2.0 * d * self.radius);
+        let cosine =
+            (d * d + self.radius * self.radius - other.radius * other.radius) / (2.0 * d * self.radius);
         let (middle, half) = (y.atan2(x), cosine.clamp(-1.0, 1.0).acos());
         Some([middle - half, middle + half])
     }
@@ -134,7 +135,8 @@ mod tests {
     // Four discs in a ring leave a hole between them: counted on a lattice of a million points, which is good to 1e-3.
     #[test]
     fn a_ring_with_a_hole() {
-        let discs = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.1)].map(|(x, y)| Disc { x, y, radius: 0.8 });
+        let discs =
+            [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.1)].map(|(x, y)| Disc { x, y, radius: 0.8 });
         let m = Moments::of(&discs);
         let (mut count, mut xy, mut yy) = (0.0, 0.0, 0.0);
         let h = 4.0 / 1000.0;
@@ -146,6 +148,9 @@ mod tests {
                 }
             }
         }
-        assert!((m.area - count).abs() < 2e-3 && (m.xy - xy).abs() < 2e-3 && (m.yy - yy).abs() < 4e-3, "{m:?}");
+        assert!(
+            (m.area - count).abs() < 2e-3 && (m.xy - xy).abs() < 2e-3 && (m.yy - yy).abs() < 4e-3,
+            "{m:?}"
+        );
     }
 }
