@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 const FOLDER: &str = "/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public";
 
 /// One test for each tutorial that runs to its end: folder, deck, how many grains there are then. LIGGGHTS 3.8.0 has the same numbers,
-/// but for places that come from random numbers: 1355 of movingMeshGran's 1500, 827 of chute_wear's that stay in the box.
+/// but for places that come from random numbers: 1355 of movingMeshGran's 1500, 827 of chute_wear's that stay in the box, two
+/// stones of multisphere, where 1.28 fill the share of the volume.
 macro_rules! tutorials {
     ($($name:ident: $folder:literal, $deck:literal, $grains:expr;)*) => {
         $(#[test]
@@ -31,6 +32,8 @@ tutorials! {
     moving_mesh_gran: "movingMeshGran", "in.movingMeshGran", 1250..=1450;
     conveyor: "conveyor", "in.conveyor", 382..=382;
     chute_wear: "chute_wear", "in.chute_wear", 800..=860;
+    mesh_tet: "mesh_tet", "in.mesh_tet", 13100..=13140;
+    multisphere: "multisphere_stone_restitution", "in.multisphere", 50..=100;
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
 }
 
@@ -84,16 +87,24 @@ fn table(text: &str) -> Vec<&str> {
     text.lines().filter(|l| super::reading::numbers(l).is_some_and(|row| row.len() > 3)).collect()
 }
 
+/// Tutorials of few seconds that use different parts of the dialect.
+const TRANSLATED: &[(&str, &str)] = &[
+    ("packing", "in.packing"),
+    ("meshGran", "in.meshGran"),
+    ("conveyor", "in.conveyor"),
+    ("multisphere_stone_restitution", "in.multisphere"),
+    ("mesh_tet", "in.mesh_tet"),
+];
+
 #[test]
 fn a_translated_tutorial_has_its_bits() {
-    for (name, deck) in [("packing", "in.packing"), ("meshGran", "in.meshGran"), ("conveyor", "in.conveyor")]
-    {
+    for (name, deck) in TRANSLATED {
         let Some(there) = copy(name) else { return };
         let out = perigrain(there.path(), &["translate", deck, "-o", "in.native"]);
         assert!(out.status.success(), "{}", printed(&out));
-        let both = [deck, "in.native"]
+        let both = [*deck, "in.native"]
             .map(|deck| printed(&perigrain(there.path(), &["-in", deck, "-log", "none", "-threads", "1"])));
-        assert!(table(&both[0]).len() > 10 && !both[1].contains("PG0305"), "{}", both[1]);
+        assert!(table(&both[0]).len() > 3 && !both[1].contains("PG0305"), "{}", both[1]);
         assert_eq!(table(&both[0]), table(&both[1]), "{name}");
     }
 }

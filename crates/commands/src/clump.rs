@@ -53,7 +53,16 @@ struct Line {
     /// The mass of the grain [mass].
     #[word(keyword, name = "M", positive, placed)]
     mass: Option<At<f64>>,
-    /// Its moments of inertia about the middle of the space that its spheres fill, with `mass` [mass length²].
+    /// The middle of its mass, with `mass` [length].
+    #[word(
+        keyword,
+        name = "X Y Z",
+        what = "{}",
+        placed,
+        shown = "the middle of the space that the spheres fill"
+    )]
+    com: Option<At<[f64; 3]>>,
+    /// Its moments of inertia about that, with `mass` [mass length²].
     #[word(keyword, name = "XX YY ZZ XY XZ YZ", placed)]
     inertia: Option<At<Inertia>>,
 }
@@ -124,6 +133,7 @@ struct Reading {
     scale: f64,
     count: Option<At<i64>>,
     mass: Option<f64>,
+    com: Option<[f64; 3]>,
     inertia: Option<[f64; 6]>,
 }
 
@@ -136,12 +146,19 @@ impl CommandStyle for ClumpCommand {
             let text = format!("there is a molecule template `{id}` already");
             return fail(Code::DUPLICATE_NAME, line.id.span, text);
         }
-        if let (Some(inertia), None) = (&line.inertia, &line.mass) {
-            let d = Diagnostic::error(Code::INCOMPLETE, inertia.span, "`inertia` belongs to a `mass`");
-            return Err(d.help("write `mass M` as well, or leave both to `mixture … mol`").into());
+        let lone = [
+            (line.inertia.as_ref().map(|i| i.span), "`inertia`"),
+            (line.com.as_ref().map(|c| c.span), "`com`"),
+        ];
+        for (span, word) in lone {
+            if span.is_some() && line.mass.is_none() {
+                let d = Diagnostic::error(Code::INCOMPLETE, span, format!("{word} belongs to a `mass`"));
+                return Err(d.help("write `mass M` as well, or leave both to `mixture … mol`").into());
+            }
         }
         let OneType(kind) = line.kind;
         let (mass, inertia) = (line.mass.map(|m| m.value), line.inertia.map(|i| i.value.0));
+        let com = line.com.map(|c| c.value);
         Ok(Box::new(Reading {
             id,
             kind,
@@ -149,6 +166,7 @@ impl CommandStyle for ClumpCommand {
             scale: line.scale,
             count: line.count,
             mass,
+            com,
             inertia,
         }))
     }
@@ -171,7 +189,8 @@ impl Act for Reading {
         let s = self.scale;
         let places: Vec<[f64; 3]> = balls.iter().map(|[x, y, z, _]| [s * x, s * y, s * z]).collect();
         let radii: Vec<f64> = balls.iter().map(|[.., r]| s * r).collect();
-        let com = self.mass.and_then(|_| Union::new(&places, &radii)).map(|union| union.centre);
+        let middle = || self.mass.and_then(|_| Union::new(&places, &radii)).map(|union| union.centre);
+        let com = self.com.or_else(middle);
         let count = places.len();
         let title = format!("a clump of {count} spheres");
         let kinds = vec![self.kind; count];
@@ -247,6 +266,7 @@ mod tests {
             assert!(blame == word || blame.starts_with("clump"), "{line}: {blame}: {text}");
         }
         assert!(refused(&w, "clump c 1 spheres 0 0 0 1").1.contains("ends too early"));
+        assert_eq!(refused(&w, "clump c 1 spheres 0 0 0 1 1 0 0 1 com 0 0 0").0, "com");
         let (_, text) = refused(&w, "clump c 1 spheres 0 0 0 1 1 0 0 1 inertia 1 1 1 0 0 0");
         assert!(text.contains("belongs to a `mass`"), "{text}");
         more(&mut w, "clump c 1 spheres 0 0 0 1 1 0 0 1");

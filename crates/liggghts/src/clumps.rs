@@ -103,7 +103,8 @@ impl Translator {
             line.put("count", count.span).word(count);
         }
         if let (Some(mass), [xx, xy, xz, yy, yz, zz]) = (&parts.mass, parts.inertia.as_slice()) {
-            line.put("mass", mass.span).word(mass).put("inertia", xx.span);
+            // The places are those about the middle of the mass then (measured).
+            line.put("mass", mass.span).word(mass).put("com 0 0 0 inertia", xx.span);
             [xx, yy, zz, xy, xz, yz].into_iter().for_each(|word| {
                 line.word(word);
             });

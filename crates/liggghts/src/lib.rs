@@ -27,6 +27,8 @@ mod words;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_shapes;
 
 use perigrain_base::diag::{Diagnostics, Result};
 use perigrain_lang::{Args, Command};

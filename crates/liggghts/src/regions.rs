@@ -190,7 +190,8 @@ fn trigonometric(name: &str, angle: &Word) -> Word {
         "cos" => x.cos(),
         _ => -x.cos(),
     };
-    instead(angle, format!("{y}"))
+    // Without the sign of a zero.
+    instead(angle, format!("{}", y + 0.0))
 }
 
 /// The error for a line that lacks something.

@@ -96,7 +96,11 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, Error> {
             _ => faces(cell, kind, &points, &mut triangles)?,
         }
     }
-    hull(&bodies, &points, &mut triangles)?;
+    if !bodies.is_empty() {
+        // Faces beside them, as Gmsh writes them, are sides of tetrahedra.
+        triangles.clear();
+        hull(&bodies, &points, &mut triangles)?;
+    }
     Ok(triangles)
 }
 
@@ -235,6 +239,9 @@ mod tests {
         let volume: f64 = all.iter().map(|[a, b, c]| dot(*a, cross(*b, *c)) / 6.0).sum();
         assert_eq!(all.len(), 12);
         assert!((volume - 1.0).abs() < 1e-15, "{volume}");
+        let beside = CUBE.replace("CELLS 6 30", "CELLS 7 34\n3 0 1 2").replace("TYPES 6", "TYPES 7\n5");
+        let beside = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{beside}").as_bytes()).unwrap();
+        assert_eq!(beside, all);
         let twice = CUBE.replace("4 0 2 3 6", "4 0 1 2 6").replace("4 0 3 7 6", "4 0 1 2 6");
         let fault = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{twice}").as_bytes()).unwrap_err();
         assert!(matches!(fault, Error::Shared(3, _)), "{fault}");

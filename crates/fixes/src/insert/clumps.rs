@@ -60,7 +60,7 @@ pub fn check(mixture: &Mixture, cx: &BuildCx) -> Result<()> {
 ///
 /// # Errors
 /// Grains that no fix moves as bodies.
-pub fn movers(mixture: &Mixture, cx: &dyn SealCx) -> Result<Vec<(Numbers, Numbers)>> {
+pub fn movers(mixture: &Mixture, cx: &mut dyn SealCx) -> Result<Vec<(Numbers, Numbers)>> {
     let mut found: Vec<(Numbers, Numbers)> = vec![];
     for clump in mixture.clumps().filter(|clump| clump.template.bonds.is_empty()) {
         let Some((id, style)) = cx.adopter(&clump.name) else {
@@ -74,10 +74,17 @@ pub fn movers(mixture: &Mixture, cx: &dyn SealCx) -> Result<Vec<(Numbers, Number
             found.push(keys);
         }
     }
+    let span = cx.span();
+    let w = cx.world();
+    if !found.is_empty() && w.settings.neighbor.exclude_molecules.is_empty() {
+        let text = "spheres of the same grain that overlap push each other apart";
+        let d = Diagnostic::warning(Code::SUSPICIOUS, span, text);
+        w.notes.push(d.help("write `neigh_modify exclude molecule/intra all` above"));
+    }
     Ok(found)
 }
 
-/// What contact laws are told of a kind of grains: of several spheres, each of them, with their own masses.
+/// What contact laws need of a kind of grains: of several spheres, each of them, with their own masses.
 pub fn to_come(kind: &Ingredient, mask: u32) -> Vec<ToCome> {
     let Some(clump) = &kind.clump else {
         return vec![ToCome { kind: kind.kind, mask, mass: kind.mass(), radius: kind.radius }];

@@ -34,6 +34,11 @@ impl Mold {
         self.set.iter().any(gives)
     }
 
+    /// Whether a file gives such a value, and not a mixture by its density.
+    pub fn reads(&self) -> bool {
+        self.set.iter().any(|t| gives(t) && t.density.is_none())
+    }
+
     /// The body of these particles if they are a copy of such a template; `sum` is the body summed from the
     /// particles. If all lie on a line, only `before`, the previous orientation of the body, fixes the
     /// rotation about it.
