@@ -43,18 +43,18 @@ fn a_clump_bounces_without_loss() {
     let rows = rows(&run(there.path(), &deck, &[]), 5);
     let energy = |k: usize| rows[k][3];
     let first = energy(2);
-    // It spins faster after the floor, and the mass is that of the union: less than that of the three spheres, 1.937e-3 kg.
+    // It spins faster after the floor, and the mass is that of the union: less than that of the three spheres, 2.262e-3 kg.
     let spin = rows.iter().map(|row| row[2]).fold(0.0, f64::max);
     assert!(spin > 2.0 * rows[2][2], "{rows:?}");
-    assert!(rows[2][4] < 1.9e-3 && rows[2][4] > 1.309e-3, "{}", rows[2][4]);
+    assert!(rows[2][4] < 2.2e-3 && rows[2][4] > 1.309e-3, "{}", rows[2][4]);
     let free: Vec<f64> =
         rows[2..].iter().map(|row| row[3]).filter(|e| (e / first - 1.0).abs() < 1e-3).collect();
     assert!(free.len() > 60 && (energy(rows.len() - 1) / first - 1.0).abs() < 1e-3, "{first} {rows:?}");
 }
 
 /// A stream of clumps to a face, slantwise and spinning.
-const STREAM: &str = "print \"solid f\nfacet normal 0 0 1\nouter loop\nvertex -.04 -.04 0\nvertex .04 -.04 0\nvertex .04 .04 0\nendloop\n\
-    endfacet\nfacet normal 0 0 1\nouter loop\nvertex -.04 -.04 0\nvertex .04 .04 0\nvertex -.04 .04 0\nendloop\nendfacet\nendsolid f\" \
+const STREAM: &str = "print \"\"\"solid f\nfacet normal 0 0 1\nouter loop\nvertex -.04 -.04 0\nvertex .04 -.04 0\nvertex .04 .04 0\nendloop\n\
+    endfacet\nfacet normal 0 0 1\nouter loop\nvertex -.04 -.04 0\nvertex .04 .04 0\nvertex -.04 .04 0\nendloop\nendfacet\nendsolid f\"\"\" \
     file face.stl screen no\nfix g all gravity 9.81 vector 0 0 -1\n\
     fix ins all insert m stream face face.stl number 20 rate 2000 length 0.03 vel 0.2 0 -1 omega 10 20 30 orientation random\n";
 
@@ -74,7 +74,8 @@ fn clumps_of_a_stream_fly_to_the_face_and_get_their_motion_there() {
         let [z, vx, vy, vz] = [row[0], row[1], row[2], row[3]];
         if z > 1e-4 {
             assert!(vx.abs() < 1e-14 && vy.abs() < 1e-14 && (vz + 1.0).abs() < 1e-14, "{row:?}");
-            assert!(row[4..7].iter().all(|o| o.abs() < 1e-14), "{row:?}");
+            // Rounding of places, in radii of 1 cm.
+            assert!(row[4..7].iter().all(|o| o.abs() < 1e-11), "{row:?}");
             above += 1;
         } else if z < -1e-4 {
             // Below the face it falls: v² - 1 = 2 g |z|, to the step in which it passes.

@@ -31,7 +31,7 @@ const THIRD: Expect = All(2e-5);
 /// LIGGGHTS counts random points in a grain of several spheres.
 const POINTS: Expect = All(1e-3);
 /// The height from which the grain falls is drawn within 1e-8 m; it meets the floor three times.
-const HEIGHT: Expect = All(1e-3);
+const HEIGHT: Expect = All(1e-5);
 
 /// Every deck, and what is expected of it.
 const DECKS: &[(&str, Expect)] = &[
