@@ -23,7 +23,7 @@ use std::sync::Mutex;
 
 /// What may be stated and not be used by any of these decks: the file of the statement, fields, why.
 const SPARED: &[(&str, &str, &str)] = &[
-    ("dumps/src/base.rs", "omega torque", "which columns a dump has is the deck's"),
+    ("dumps/src/base.rs", "omega torque molecule", "which columns a dump has is the deck's"),
     ("fixes/src/ave_atom.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/ave_chunk.rs", "f", "what is averaged is the deck's"),
     ("fixes/src/ave_histo.rs", "f", "what is averaged is the deck's"),

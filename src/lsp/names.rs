@@ -202,7 +202,7 @@ fn named_by_place(words: &[Word], out: &mut Vec<Mention>) {
             }
         }
         "material" => add(1, Kind::Material, Role::Defines),
-        "molecule" => add(1, Kind::Molecule, Role::Defines),
+        "molecule" | "clump" => add(1, Kind::Molecule, Role::Defines),
         "label" => add(1, Kind::Label, Role::Defines),
         "include" => add(1, Kind::File, Role::Uses),
         "jump" => {

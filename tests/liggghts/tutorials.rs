@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 const FOLDER: &str = "/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public";
 
 /// One test for each tutorial that runs to its end: folder, deck, how many grains there are then. LIGGGHTS 3.8.0 has the same numbers,
-/// but for places that come from random numbers: 1355 of movingMeshGran's 1500, 827 of chute_wear's that stay in the box.
+/// but for places that come from random numbers: 1355 of movingMeshGran's 1500, 827 of chute_wear's that stay in the box, two
+/// stones of multisphere, where 1.28 fill the share of the volume,
+/// and 13121 grains of mesh_tet, where sites on the surface do not belong to the region.
 macro_rules! tutorials {
     ($($name:ident: $folder:literal, $deck:literal, $grains:expr;)*) => {
         $(#[test]
@@ -34,6 +36,8 @@ tutorials! {
     heat_transfer_1: "heatTransfer_1", "in.heatGran", 890..=890;
     heat_transfer_2: "heatTransfer_2", "in.heatGran", 890..=890;
     hydrogel_default: "hydrogel_multicontact", "in.hydrogel_default", 1..=100_000;
+    mesh_tet: "mesh_tet", "in.mesh_tet", 14583..=14583;
+    multisphere: "multisphere_stone_restitution", "in.multisphere", 50..=100;
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
 }
 
@@ -145,26 +149,31 @@ fn table(text: &str) -> Vec<&str> {
     text.lines().filter(|l| super::reading::numbers(l).is_some_and(|row| row.len() > 3)).collect()
 }
 
+/// Tutorials of few seconds that use different parts of the dialect.
+const TRANSLATED: &[(&str, &str)] = &[
+    ("packing", "in.packing"),
+    ("meshGran", "in.meshGran"),
+    ("conveyor", "in.conveyor"),
+    ("multisphere_stone_restitution", "in.multisphere"),
+    ("mesh_tet", "in.mesh_tet"),
+    ("heatTransfer_1", "in.heatGran"),
+    ("heatTransfer_2", "in.heatGran"),
+];
+
 #[test]
 fn a_translated_tutorial_has_its_bits() {
-    for (name, deck) in [
-        ("packing", "in.packing"),
-        ("meshGran", "in.meshGran"),
-        ("conveyor", "in.conveyor"),
-        ("heatTransfer_1", "in.heatGran"),
-        ("heatTransfer_2", "in.heatGran"),
-    ] {
+    for (name, deck) in TRANSLATED {
         let Some(there) = copy(name) else { return };
-        if deck == "in.heatGran" {
+        if *deck == "in.heatGran" {
             let text = fs::read_to_string(there.path().join(deck)).unwrap();
             let text = text.replace("20000 upto", "12000 upto").replace("50000 upto", "16000 upto");
             fs::write(there.path().join(deck), text).unwrap();
         }
         let out = perigrain(there.path(), &["translate", deck, "-o", "in.native"]);
         assert!(out.status.success(), "{}", printed(&out));
-        let both = [deck, "in.native"]
+        let both = [*deck, "in.native"]
             .map(|deck| printed(&perigrain(there.path(), &["-in", deck, "-log", "none", "-threads", "1"])));
-        assert!(table(&both[0]).len() > 10 && !both[1].contains("PG0305"), "{}", both[1]);
+        assert!(table(&both[0]).len() > 3 && !both[1].contains("PG0305"), "{}", both[1]);
         assert_eq!(table(&both[0]), table(&both[1]), "{name}");
     }
 }

@@ -289,6 +289,7 @@ const STAY: &[&str] = &[
     "angle_style",
     "angle_coeff",
     "molecule",
+    "clump",
     "mixture",
 ];
 

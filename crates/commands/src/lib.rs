@@ -10,6 +10,7 @@ mod atom_modify;
 mod atom_style;
 mod boundary;
 mod change_box;
+mod clump;
 mod comm_modify;
 pub mod create_atoms;
 mod create_bonds;
@@ -106,5 +107,6 @@ pub const COMMANDS: &[&dyn CommandStyle] = &[
     &angle_style::AngleStyleCommand,
     &angle_style::AngleCoeff,
     &molecule::Molecule,
+    &clump::ClumpCommand,
     &mixture::MixtureCommand,
 ];

@@ -44,9 +44,10 @@ impl Style for RegionCommand {
                    Every number of a shape but the ends of a cylinder may be an equal-style variable `v_name`. With these, with \
                    `move` and with `rotate` a region is where its variables say at each moment it is used: by a command, a formula, \
                    and in every step of a run by fixes, groups and dumps. It is first turned, then shifted.\n\n\
-                   The file of `mesh` is STL (text or binary), OBJ (its name ends so), PLY (text or binary) or VTP (VTK's XML of \
-                   surfaces; text, base64 or appended, zlib or plain). Polygons are cut into fans around their first corner and \
-                   should be convex. After `scale` and `shift` the numbers count in lattice spacings or box units as all distances \
+                   The file of `mesh` is STL (text or binary), OBJ (its name ends so), PLY (text or binary), VTP (VTK's XML of \
+                   surfaces; text, base64 or appended, zlib or plain) or VTK's legacy text. Polygons are cut into fans around their \
+                   first corner and should be convex; of tetrahedra (legacy VTK) the faces that belong to one of them alone make the \
+                   surface. After `scale` and `shift` the numbers count in lattice spacings or box units as all distances \
                    do.\n\n\
                    The surface must be closed: each edge borders two triangles (corners are shared where their numbers are the \
                    same), and no two triangles cross or touch elsewhere; errors are reported with the number of edges and the place \

@@ -122,7 +122,7 @@ impl Compute for Energy {
     fn op(&self, _cx: &mut dyn SealCx, slot: SlotId, stage: Stage, when: &When) -> Result<Box<dyn Op>> {
         let (me, kept) = (self.clone(), self.fix.bodies());
         Ok(fill(&self.id, &Wanted { slot, stage, when }, MEMO | RIGID, move |w, _, out| {
-            let twice: f64 = bodies(w, kept).iter().map(me.twice).sum();
+            let twice = bodies(w, kept).iter().fold(0.0, |sum, body| sum + (me.twice)(body));
             out.scalar = 0.5 * w.settings.units.constants().mvv2e * twice;
             Ok(())
         }))

@@ -24,8 +24,8 @@ use perigrain_styles::{BuildCx, SealCx, Wants};
 
 pub use keywords::{Common, OfParticles, column, foreign};
 use perigrain_world::field::{
-    BOX, CHARGE, COLUMNS, F, FACTS, Fields, IMAGE, KIND, MASK, MASS, MU, OMEGA, RADIUS, REGIONS, SLOTS, TAG,
-    TORQUE, V, VOLUME, X,
+    BOX, CHARGE, COLUMNS, F, FACTS, Fields, IMAGE, KIND, MASK, MASS, MOLECULE, MU, OMEGA, RADIUS, REGIONS,
+    SLOTS, TAG, TORQUE, V, VOLUME, X,
 };
 use perigrain_world::{Domain, GroupId, Key, Numbers, Region, World};
 
@@ -303,7 +303,7 @@ impl Base {
         let name = format!("dump {} {}", self.id, self.style);
         let style = cx.world().particles.style;
         let of = |there: bool, field: Fields| if there { field } else { Fields::NONE };
-        let electric = of(style.charged, CHARGE) | of(style.dipole, MU);
+        let electric = of(style.charged, CHARGE) | of(style.dipole, MU) | of(style.molecules, MOLECULE);
         let reads =
             X | V | F | IMAGE | MASK | TAG | KIND | MASS | RADIUS | OMEGA | TORQUE | VOLUME | electric;
         // The file exists from the first step on, as in LAMMPS.

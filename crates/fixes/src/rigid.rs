@@ -166,7 +166,7 @@ fn small(style: &'static str, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn F
         Many::Molecule => molecules(cx)?,
         Many::Custom(Property(column)) => Split::Custom(column),
     };
-    Ok(Box::new(Declared { mold: line.mol, ..declared(style, false, split, line.common, cx) }))
+    Ok(Box::new(Declared { molds: line.mol, ..declared(style, false, split, line.common, cx) }))
 }
 
 fn molecules(cx: &BuildCx) -> Result<Split> {
@@ -199,7 +199,7 @@ fn declared(style: &'static str, whole: bool, split: Split, common: Common, cx: 
         switches: vec![],
         reinit: reinit && infile.is_none(),
         infile,
-        mold: None,
+        molds: vec![],
         gravity,
         virial: true,
     }
@@ -256,8 +256,8 @@ struct Declared {
     switches: Vec<Switch>,
     reinit: bool,
     infile: Option<Word>,
-    /// The template of bodies.
-    mold: Option<Mold>,
+    /// The templates of bodies.
+    molds: Vec<Mold>,
     /// The fix gravity that pulls the bodies.
     gravity: Option<Word>,
     virial: bool,
@@ -271,7 +271,12 @@ impl Declared {
 
     /// Whether a template gives such masses.
     fn casts(&self) -> bool {
-        self.mold.as_ref().is_some_and(Mold::gives)
+        self.molds.iter().any(Mold::gives)
+    }
+
+    /// With its templates as they are now.
+    fn now(&self, w: &World) -> Self {
+        Self { molds: self.molds.iter().map(|mold| mold.now(w)).collect(), ..self.clone() }
     }
 
     /// Whether orientations are integrated by NO_SQUISH.
@@ -339,6 +344,33 @@ impl Fix for Declared {
     }
 
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
+        self.now(cx.world()).sealed(cx)
+    }
+
+    fn stop(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
+        self.now(w).halt(w, what, span)
+    }
+
+    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
+        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
+        Ok(())
+    }
+
+    fn facts(&self, _: &World) -> Facts {
+        Facts {
+            moves: Moves::Turns,
+            needs_whole_steps: Some(
+                "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
+            ),
+            adopts: self.molds.iter().map(|mold| mold.name.clone()).collect(),
+            ..Facts::default()
+        }
+    }
+}
+
+impl Declared {
+    /// The ops of a run.
+    fn sealed(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         check_masses(cx.world(), span)?;
         let slot = cx.slot(&format!("f_{}", self.id));
@@ -446,7 +478,8 @@ impl Fix for Declared {
         Ok(ops)
     }
 
-    fn stop(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
+    /// Takes linear or angular motion from all bodies.
+    fn halt(&self, w: &mut World, what: Motion, span: Span) -> Result<()> {
         self.begin(w, span)?;
         self.adopt(w, span)?;
         let mut bodies = self.load(w);
@@ -459,21 +492,5 @@ impl Fix for Declared {
         self.store(w, &bodies);
         self.carry(w);
         Ok(())
-    }
-
-    fn modify(&mut self, args: &mut Args, cx: &BuildCx) -> Result<()> {
-        self.virial = options::<Virial>(args, cx)?.virial.unwrap_or(self.virial);
-        Ok(())
-    }
-
-    fn facts(&self, _: &World) -> Facts {
-        Facts {
-            moves: Moves::Turns,
-            needs_whole_steps: Some(
-                "its bodies add up the forces of a step once, and LAMMPS' count those of one level twice and leave others out",
-            ),
-            adopts: self.mold.as_ref().map(|m| m.name.clone()),
-            ..Facts::default()
-        }
     }
 }

@@ -7,5 +7,6 @@ pub mod mesh;
 pub mod points;
 pub mod rows;
 pub mod text;
+pub mod union;
 pub mod voxels;
 pub mod words;

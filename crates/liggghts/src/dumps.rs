@@ -1,6 +1,7 @@
 //! Dumps of LIGGGHTS: grains and surfaces for ParaView, surfaces as STL.
 
 use crate::Translator;
+use crate::clumps::named;
 use crate::native::Line;
 use crate::reading::{number, rounded, without_counterpart};
 use perigrain_base::diag::Result;
@@ -20,8 +21,9 @@ pub(crate) fn custom(cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
             let help = "grains and solids alone are computed here";
             return Err(without_counterpart(word, "a fluid of particles", help).into());
         }
+        let word = named(word);
         if seen.insert(word.text.clone()) {
-            line.word(word);
+            line.word(&word);
         }
     }
     Ok(vec![line.done()])

@@ -142,20 +142,26 @@ impl Translator {
             "massrate" => parts.rate = one("massrate", number(args, "the mass in a unit of time")?),
             "extrude_length" => parts.length.extend(one("length", number(args, "the length of the stream")?)),
             "duration" => parts.length.extend(one("during", self.count(args, "the number of steps")?)),
-            _ => self.idle_keyword(word, args)?,
+            _ => self.idle_keyword(word, args, parts)?,
         }
         Ok(())
     }
 
     /// Keywords that change nothing here, and those that cannot be had.
-    fn idle_keyword(&mut self, word: &Word, args: &mut Args) -> Result<()> {
+    fn idle_keyword(&mut self, word: &Word, args: &mut Args, parts: &mut Parts) -> Result<()> {
         match word.text.as_str() {
             "orientation" => {
+                let at = args.here();
                 let style = choice(args, "orientation", &["constant", "random", "template"])?;
-                if style == "constant" {
-                    (0..4).try_for_each(|_| number(args, "a component of the quaternion").map(drop))?;
+                let count = if style == "constant" { 4 } else { 0 };
+                let turn = (0..count).map(|_| number(args, "a component of the quaternion"));
+                let turn = turn.collect::<Result<Vec<Word>>>()?;
+                if !self.has_clumps() {
+                    self.idle(word, "a sphere has none");
+                } else if style != "template" {
+                    parts.rest.extend([Word::new("orientation", word.span), Word::new(style, at)]);
+                    parts.rest.extend(turn);
                 }
-                self.idle(word, "a sphere has none");
             }
             "set_property" => {
                 let help = "write `set group ID d_NAME …` behind the run that inserts the grains";

@@ -17,6 +17,7 @@ pub(crate) fn line(cmd: &Command) -> Result<String, &'static str> {
             Err("`set` gives temperatures there, also to new particles")
         }
         ("fix", "heat/flow") if cmd.args.iter().any(|w| w.text == "source") => Err("no sources of heat"),
+        ("clump", _) => Err("write the spheres into a molecule file, with mass and inertia"),
         ("fix", "dt/grain") => Err("no check of the time step"),
         ("fix", "wall/gran") if cmd.args.iter().any(|w| w.text == "coeff") => {
             Err("write the law of the wall behind `wall/gran granular`")

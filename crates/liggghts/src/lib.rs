@@ -5,6 +5,7 @@
 //!
 //! Source: the manual of LIGGGHTS-PUBLIC 3.8.0; what it leaves open was measured with that program.
 
+mod clumps;
 mod coefficients;
 mod computes;
 mod contacts;
@@ -20,12 +21,15 @@ mod native;
 mod old;
 mod properties;
 mod reading;
+mod regions;
 mod rewrite;
 mod walls;
 mod words;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_shapes;
 
 use perigrain_base::diag::{Diagnostics, Result};
 use perigrain_lang::{Args, Command};
@@ -60,6 +64,7 @@ pub struct Translator {
     written: Option<(u64, usize)>,
     templates: BTreeMap<String, mixtures::Template>,
     mixtures: BTreeSet<String>,
+    movers: clumps::Movers,
     surfaces: BTreeMap<String, meshes::Surface>,
     /// Conduction of heat.
     heat: Option<heat::Heat>,
@@ -184,7 +189,8 @@ impl Translator {
     /// What stands before a run: the coefficients, and that grains which leave the box are deleted, unless the deck says otherwise
     /// (LIGGGHTS' default: measured).
     fn before_run(&mut self, cmd: &Command) -> Result<Vec<Command>> {
-        let mut lines: Vec<Command> = self.heat_again()?.into_iter().collect();
+        let mut lines = self.bodies()?;
+        lines.extend(self.heat_again()?);
         lines.extend(self.coefficients()?);
         if !std::mem::replace(&mut self.lost, true) && cmd.name.text != "write_data" {
             let mut line = native::Line::new(cmd, "thermo_modify");

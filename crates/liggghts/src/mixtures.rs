@@ -9,9 +9,11 @@ use perigrain_lang::{Args, Command, Word};
 /// A kind of grain.
 #[derive(Clone, Debug)]
 pub(crate) struct Template {
-    kind: Word,
-    radius: Word,
-    density: Word,
+    pub kind: Word,
+    pub radius: Word,
+    pub density: Word,
+    /// It has several spheres: a native molecule template.
+    pub clump: bool,
 }
 
 const KEYWORDS: &[&str] = &["atom_type", "density", "radius", "volume_limit", "relative"];
@@ -23,7 +25,7 @@ impl Translator {
         seed(args)?;
         let at = cmd.args[2].span;
         let one = |text: &str| Word::new(text, at);
-        let mut template = Template { kind: one("1"), radius: one("1"), density: one("1") };
+        let mut template = Template { kind: one("1"), radius: one("1"), density: one("1"), clump: false };
         while let Some(word) = args.next() {
             match word.text.as_str() {
                 "atom_type" => {
@@ -72,7 +74,11 @@ impl Translator {
                 let near = nearest(&word.text, self.templates.keys().map(String::as_str));
                 return Err(near.into_iter().fold(d, |d, n| d.help(format!("did you mean `{n}`?"))).into());
             };
-            line.put("sphere", word.span).word(&template.kind).word(&twice(&template.radius));
+            if template.clump {
+                line.put("mol", word.span).word(word);
+            } else {
+                line.put("sphere", word.span).word(&template.kind).word(&twice(&template.radius));
+            }
             line.word(&template.density);
             line.word(&number(args, "the share of the template")?);
             found += 1;
@@ -89,7 +95,7 @@ impl Translator {
     }
 
     /// Newcomers are members of `all` and of the group of the fix that inserts them.
-    fn in_all(&mut self, cmd: &Command) {
+    pub(crate) fn in_all(&mut self, cmd: &Command) {
         let group = &cmd.args[1];
         if group.text != "all" {
             let text = format!("new grains do not join group `{}` through this line", group.text);
@@ -105,7 +111,7 @@ fn seed(args: &mut Args) -> Result<Word> {
 }
 
 /// `constant X`; random styles are refused by name.
-fn constant(args: &mut Args, what: &str) -> Result<Word> {
+pub(crate) fn constant(args: &mut Args, what: &str) -> Result<Word> {
     let word = args.peek().cloned();
     match choice(args, "random style", STYLES)? {
         "constant" => number(args, what),

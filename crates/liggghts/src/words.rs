@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, contacts, dumps, idle, old};
+use crate::{Translator, clumps, computes, contacts, dumps, idle, old, regions};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -83,16 +83,16 @@ pub(crate) const TABLE: &[Entry] = &[
         "fix",
         "particletemplate/multisphere",
         true,
-        Take::Refused(
-            "a template of several spheres",
-            "`molecule` with `fix rigid/small`, and `fix pour … mol`",
-        ),
+        Take::Lines(|t, cmd, args| t.clump(cmd, args).map(Some)),
     ),
     entry(
         "fix",
         "particletemplate/multiplespheres*",
         true,
-        Take::Refused("a template of bonded spheres", "`molecule` with bonds, and `fix pour … mol`"),
+        Take::Refused(
+            "a template of bonded spheres",
+            "`molecule` with bonds of `bond_style bpm/beam`, `mixture … mol` and `fix insert`",
+        ),
     ),
     entry(
         "fix",
@@ -147,11 +147,15 @@ pub(crate) const TABLE: &[Entry] = &[
         true,
         Take::Lines(|_, cmd, args| Ok(Some(computes::time_step(cmd, args)))),
     ),
+    entry("fix", "multisphere", true, Take::Lines(|t, cmd, args| t.multisphere(cmd, args).map(Some))),
     entry(
         "fix",
         "multisphere*",
         true,
-        Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
+        Take::Refused(
+            "grains of several spheres that break",
+            "`fix multisphere`, or bonds of `bond_style bpm/beam`",
+        ),
     ),
     entry("fix", "heat/gran", true, Take::Lines(|t, cmd, args| t.heat(cmd, args))),
     entry("fix", "heat/gran/conduction", true, Take::Lines(|t, cmd, args| t.heat(cmd, args))),
@@ -195,8 +199,11 @@ pub(crate) const TABLE: &[Entry] = &[
         "compute",
         "erotate/multisphere",
         false,
-        Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
+        Take::Lines(|t, cmd, _| t.energy(cmd, "erotate/rigid").map(Some)),
     ),
+    entry("compute", "ke/multisphere", false, Take::Lines(|t, cmd, _| t.energy(cmd, "ke/rigid").map(Some))),
+    entry("compute", "multisphere", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
+    entry("compute", "rigid", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
     entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
     entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
     entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
@@ -207,6 +214,7 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Refused("a table of contacts", "`contacts` behind `fix wall/mesh`, and `dump local`"),
     ),
     entry("dump", "custom/vtk", true, Take::Lines(|_, cmd, args| dumps::custom(cmd, args).map(Some))),
+    entry("dump", "custom", false, Take::Lines(|_, cmd, _| Ok(clumps::dump(cmd)))),
     entry("dump", "mesh/stl", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/stl"))),
     entry("dump", "stl", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/stl"))),
     entry("dump", "mesh/vtk", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/vtk"))),
@@ -219,23 +227,13 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Refused("a picture of contacts", "`dump local` with `compute pair/local`"),
     ),
     entry("dump_modify", "", false, Take::Lines(|_, cmd, _| Ok(dumps::modified(cmd)))),
-    entry(
-        "region",
-        "mesh/tet",
-        false,
-        Take::Refused("a region of tetrahedra", "`region mesh` with the closed surface as STL"),
-    ),
-    entry(
-        "region",
-        "wedge",
-        false,
-        Take::Refused("a wedge", "`region intersect` of a cylinder and prisms or blocks"),
-    ),
+    entry("region", "mesh/tet", false, Take::Lines(|t, cmd, args| t.tetrahedra(cmd, args).map(Some))),
+    entry("region", "wedge", false, Take::Lines(|_, cmd, args| regions::wedge(cmd, args).map(Some))),
     entry("set", "", false, Take::Lines(|t, cmd, _| t.set(cmd))),
     entry("run", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("thermo", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("unfix", "", false, Take::Lines(|t, cmd, _| Ok(t.unfix(cmd)))),
-    entry("fix_modify", "", false, Take::Lines(|t, cmd, _| Ok(t.fix_modify(cmd)))),
+    entry("fix_modify", "", false, Take::Lines(|t, cmd, _| t.switched(cmd).map(|()| t.fix_modify(cmd)))),
     entry("create_box", "", false, Take::Lines(|t, cmd, _| Ok(t.create_box(cmd)))),
     entry("pair_coeff", "", false, Take::Lines(|t, cmd, _| Ok(t.pair_coeff(cmd)))),
     entry("fix", "wall/mesh", false, Take::Same),

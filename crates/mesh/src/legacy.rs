@@ -1,7 +1,9 @@
-//! VTK's legacy text files of surfaces: `POLYDATA` and `UNSTRUCTURED_GRID`.
+//! VTK's legacy text files of surfaces and of tetrahedra: `POLYDATA` and `UNSTRUCTURED_GRID`.
 
 use super::Triangle;
 use super::read::fan;
+use perigrain_base::math::vec3::{cross, dot, sub};
+use std::collections::BTreeMap;
 use std::str::SplitAsciiWhitespace;
 use thiserror::Error;
 
@@ -23,8 +25,12 @@ pub enum Error {
     NoPoint(usize),
     #[error("it has no points")]
     NoPoints,
-    #[error("cells of type {0} are no faces: triangles, quadrilaterals, polygons and strips are read")]
+    #[error(
+        "cells of type {0} are no faces: triangles, quadrilaterals, polygons, strips and tetrahedra are read"
+    )]
     Cell(usize),
+    #[error("{0} tetrahedra have the face of the points {a} {b} {c}", a = .1[0], b = .1[1], c = .1[2])]
+    Shared(usize, [usize; 3]),
 }
 
 /// VTK's numbers of kinds of cells.
@@ -33,6 +39,7 @@ const STRIP: usize = 6;
 const POLYGON: usize = 7;
 const PIXEL: usize = 8;
 const QUAD: usize = 9;
+const TETRA: usize = 10;
 /// Points and lines, which are passed over.
 const WITHOUT_AREA: [usize; 4] = [1, 2, 3, 4];
 
@@ -82,10 +89,49 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Triangle>, Error> {
         return Err(Error::NoPoints);
     }
     let mut triangles = vec![];
+    let mut bodies: Vec<[usize; 4]> = vec![];
     for (cell, kind) in cells.iter().zip(kinds) {
-        faces(cell, kind, &points, &mut triangles)?;
+        match (kind, cell.as_slice()) {
+            (TETRA, [a, b, c, d]) => bodies.push([*a, *b, *c, *d]),
+            _ => faces(cell, kind, &points, &mut triangles)?,
+        }
+    }
+    if !bodies.is_empty() {
+        // Faces beside them, as Gmsh writes them, are sides of tetrahedra.
+        triangles.clear();
+        hull(&bodies, &points, &mut triangles)?;
     }
     Ok(triangles)
+}
+
+/// The faces that belong to one tetrahedron alone, with their corners counterclockwise as seen from outside.
+fn hull(bodies: &[[usize; 4]], points: &[[f64; 3]], out: &mut Vec<Triangle>) -> Result<(), Error> {
+    let place = |k: usize| points.get(k).copied().ok_or(Error::NoPoint(k));
+    let mut found: BTreeMap<[usize; 3], usize> = BTreeMap::new();
+    let sorted = |mut face: [usize; 3]| {
+        face.sort_unstable();
+        face
+    };
+    // Each face with the corner across from it.
+    let sides = |t: &[usize; 4]| {
+        let [a, b, c, d] = *t;
+        [([b, c, d], a), ([a, c, d], b), ([a, b, d], c), ([a, b, c], d)]
+    };
+    for (face, _) in bodies.iter().flat_map(sides) {
+        *found.entry(sorted(face)).or_default() += 1;
+    }
+    if let Some((face, count)) = found.iter().find(|(_, count)| **count > 2) {
+        return Err(Error::Shared(*count, *face));
+    }
+    for (face, inner) in bodies.iter().flat_map(sides) {
+        if found.get(&sorted(face)) != Some(&1) {
+            continue;
+        }
+        let [a, b, c] = [place(face[0])?, place(face[1])?, place(face[2])?];
+        let inwards = dot(cross(sub(b, a), sub(c, a)), sub(place(inner)?, a)) > 0.0;
+        out.push(if inwards { [a, c, b] } else { [a, b, c] });
+    }
+    Ok(())
 }
 
 /// The next number behind a word.
@@ -180,6 +226,28 @@ mod tests {
         assert_eq!(read(newer.as_bytes()), Ok(halves_again()));
         let strip = format!("{HEAD}DATASET POLYDATA\n{square}TRIANGLE_STRIPS 1 5\n4 0 1 3 2\n");
         assert_eq!(read(strip.as_bytes()).map(|all| all.len()), Ok(2));
+    }
+
+    /// The corners of a cube and its six tetrahedra about the diagonal from 0 to 6.
+    pub const CUBE: &str = "POINTS 8 double\n0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1\nCELLS 6 30\n4 0 1 2 6\n\
+        4 0 2 3 6\n4 0 3 7 6\n4 0 7 4 6\n4 0 4 5 6\n4 0 5 1 6\nCELL_TYPES 6\n10 10 10 10 10 10\n";
+
+    // A cube has 12 triangles of area 1/2, and the flux of x through them is its volume where all look outwards.
+    #[test]
+    fn faces_of_one_tetrahedron_alone_are_the_surface() {
+        let all = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{CUBE}").as_bytes()).unwrap();
+        let volume: f64 = all.iter().map(|[a, b, c]| dot(*a, cross(*b, *c)) / 6.0).sum();
+        assert_eq!(all.len(), 12);
+        assert!((volume - 1.0).abs() < 1e-15, "{volume}");
+        let beside = CUBE.replace("CELLS 6 30", "CELLS 7 34\n3 0 1 2").replace("TYPES 6", "TYPES 7\n5");
+        let beside = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{beside}").as_bytes()).unwrap();
+        assert_eq!(beside, all);
+        let twice = CUBE.replace("4 0 2 3 6", "4 0 1 2 6").replace("4 0 3 7 6", "4 0 1 2 6");
+        let fault = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{twice}").as_bytes()).unwrap_err();
+        assert!(matches!(fault, Error::Shared(3, _)), "{fault}");
+        let beyond = CUBE.replace("4 0 2 3 6", "4 0 2 3 9");
+        let fault = read(format!("{HEAD}DATASET UNSTRUCTURED_GRID\n{beyond}").as_bytes()).unwrap_err();
+        assert_eq!(fault, Error::NoPoint(9));
     }
 
     fn halves_again() -> Vec<Triangle> {

@@ -95,8 +95,8 @@ pub struct Facts {
     pub makes_particles: bool,
     /// Its ops stand behind those of all other fixes: it takes away forces that these have added.
     pub acts_last: bool,
-    /// The molecule template of which new copies become rigid bodies of this fix.
-    pub adopts: Option<String>,
+    /// The molecule templates of which new copies become rigid bodies of this fix.
+    pub adopts: Vec<String>,
     /// The file it writes during a run.
     pub file: Option<PathBuf>,
     /// How it watches the energy of a run.

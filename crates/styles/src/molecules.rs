@@ -380,7 +380,7 @@ impl Molecules {
                 format!("there is no fix `{id}`"),
                 format!("fix {id} GROUP rigid/small molecule mol {}", self.name),
             ),
-            Some(Some(name)) if name == self.name => return Ok(()),
+            Some(names) if names.contains(&self.name) => return Ok(()),
             Some(_) => (
                 format!("fix {id} does not take molecules of template `{}`", self.name),
                 format!("fix {id} GROUP rigid/small molecule mol {}", self.name),

@@ -255,8 +255,12 @@ pub trait SealCx {
     fn gravities(&mut self) -> Vec<Gravity> {
         vec![]
     }
-    /// Of a fix of this ID, of which molecule template new copies become its rigid bodies; `None` without such a fix.
-    fn adopts(&self, _id: &str) -> Option<Option<String>> {
+    /// Of a fix of this ID, of which molecule templates new copies become its rigid bodies; `None` without such a fix.
+    fn adopts(&self, _id: &str) -> Option<Vec<String>> {
+        None
+    }
+    /// ID and style of the fix that moves copies of a molecule template as rigid bodies.
+    fn adopter(&self, _template: &str) -> Option<(String, &'static str)> {
         None
     }
     /// The log of the run.

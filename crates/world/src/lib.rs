@@ -77,7 +77,7 @@ pub use groups::{Dynamic, GroupId, Groups};
 pub use images::Images;
 pub use lattice::Lattice;
 pub use minimizer::Minimizer;
-pub use mixture::{Ingredient, Mixture};
+pub use mixture::{Clump, Ingredient, Mixture};
 pub use moving::{Grip, Turn, Under};
 pub use named::{Constant, Key, Named, Numbers, Vectors};
 pub use outline::Outline;

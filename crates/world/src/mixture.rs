@@ -1,30 +1,82 @@
 //! Mixtures of grains: kinds with their shares of the number, as `mixture` declares them.
 
+use crate::Template;
+use perigrain_base::math::body::{Quat, apply, matrix};
 use perigrain_base::math::rng::ParkMiller;
+use perigrain_base::math::vec3::{Vec3, add, length, sub};
 use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A grain of several spheres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clump {
+    /// The name of its molecule template.
+    pub name: String,
+    /// Its spheres, whose masses sum to that of the grain.
+    pub template: Template,
+    /// The middle of its mass [length].
+    pub centre: Vec3,
+    /// Its volume, overlaps once [volume].
+    pub volume: f64,
+    /// Its mass [mass].
+    pub mass: f64,
+}
+
+impl Clump {
+    /// The places of its spheres when its centre lies at `at` and it is turned.
+    pub fn places(&self, at: Vec3, q: Quat) -> Vec<Vec3> {
+        let m = matrix(q);
+        self.template.places.iter().map(|x| add(at, apply(&m, sub(*x, self.centre)))).collect()
+    }
+
+    /// The radius of the sphere about its centre that holds it [length].
+    pub fn reach(&self) -> f64 {
+        let each = self.template.places.iter().zip(&self.template.radii);
+        each.map(|(x, r)| length(sub(*x, self.centre)) + r).fold(0.0, f64::max)
+    }
+
+    /// The density of its spheres: less than its own where they overlap, so that what they have in common counts once [density].
+    pub fn density(&self) -> f64 {
+        self.mass / self.template.radii.iter().map(|r| 4.0 / 3.0 * PI * r.powi(3)).sum::<f64>()
+    }
+}
 
 /// One kind of grain in a mixture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ingredient {
-    /// The type.
+    /// The type; of several spheres that of the first.
     pub kind: u16,
-    /// The radius [length].
+    /// The radius; of several spheres that of the sphere which holds them [length].
     pub radius: f64,
     /// The density [density].
     pub density: f64,
     /// Its share of the number of grains.
     pub share: f64,
+    /// The spheres, where it is not a single one.
+    pub clump: Option<Arc<Clump>>,
 }
 
 impl Ingredient {
     /// The volume of a grain [volume].
     pub fn volume(&self) -> f64 {
-        4.0 / 3.0 * PI * self.radius.powi(3)
+        match &self.clump {
+            Some(clump) => clump.volume,
+            None => 4.0 / 3.0 * PI * self.radius.powi(3),
+        }
     }
 
     /// The mass of a grain [mass].
     pub fn mass(&self) -> f64 {
-        self.density * self.volume()
+        match &self.clump {
+            Some(clump) => clump.mass,
+            None => self.density * self.volume(),
+        }
+    }
+
+    /// The radius of its largest sphere [length].
+    pub fn largest(&self) -> f64 {
+        let clump = self.clump.as_ref().map(|clump| clump.template.radii.iter().copied().fold(0.0, f64::max));
+        clump.unwrap_or(self.radius)
     }
 }
 
@@ -65,9 +117,19 @@ impl Mixture {
         self.mean(Ingredient::volume)
     }
 
-    /// The largest radius [length].
+    /// The largest radius of a grain [length].
     pub fn widest(&self) -> f64 {
         self.kinds.first().map_or(0.0, |kind| kind.radius)
+    }
+
+    /// The largest radius of a sphere [length].
+    pub fn largest(&self) -> f64 {
+        self.kinds.iter().map(Ingredient::largest).fold(0.0, f64::max)
+    }
+
+    /// The grains of several spheres.
+    pub fn clumps(&self) -> impl Iterator<Item = &Clump> {
+        self.kinds.iter().filter_map(|kind| kind.clump.as_deref())
     }
 
     /// How many of each kind `n` grains are: `n` times its share rounded down, and the rest drawn by what was cut off, so that the mean
@@ -95,7 +157,7 @@ mod tests {
     use super::*;
 
     fn kind(diameter: f64, share: f64) -> Ingredient {
-        Ingredient { kind: 1, radius: 0.5 * diameter, density: 2500.0, share }
+        Ingredient { kind: 1, radius: 0.5 * diameter, density: 2500.0, share, clump: None }
     }
 
     // Mass shares 0.3 of 5 mm and 0.7 of 8 mm: number shares 0.3/m5 and 0.7/m8 over their sum; by number, mass shares likewise.

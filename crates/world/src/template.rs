@@ -32,6 +32,9 @@ pub struct Template {
     pub com: Option<[f64; 3]>,
     /// Moments of inertia about the centre of mass xx yy zz xy xz yz, if the file has them.
     pub inertia: Option<[f64; 6]>,
+    /// The density by which a mixture gave it mass, centre and moments of inertia.
+    #[serde(default)]
+    pub density: Option<f64>,
 }
 
 impl Template {

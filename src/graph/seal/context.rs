@@ -122,8 +122,14 @@ impl SealCx for Sealer<'_> {
         found.into_iter().map(gravity).collect()
     }
 
-    fn adopts(&self, id: &str) -> Option<Option<String>> {
+    fn adopts(&self, id: &str) -> Option<Vec<String>> {
         self.graph.find_fix(id).map(|f| f.fix.facts(self.world).adopts)
+    }
+
+    fn adopter(&self, template: &str) -> Option<(String, &'static str)> {
+        let mut all = self.facts();
+        let found = all.find(|(_, facts)| facts.adopts.iter().any(|name| name == template));
+        found.map(|(f, _)| (f.id.clone(), f.style))
     }
 
     fn log(&self) -> Log {

@@ -37,6 +37,10 @@ const TEXT: &str = "A deck with a word that only LIGGGHTS has (`atom_style granu
     `surface_vel` is `speed`, `surface_ang_vel` is `spin`, `reference_point` is `about`;\n\
     - `particletemplate/sphere` with `particledistribution/discrete`: `mixture`, with shares of the mass, or of the number behind \
     `/numberbased`;\n\
+    - `particletemplate/multisphere`: `clump`, and `mol` of a mixture; `fix multisphere`: `fix rigid/small` of these templates, with \
+    `neigh_modify exclude molecule/intra all`; `ke/multisphere`, `erotate/multisphere`, `compute rigid property`: `ke/rigid`, \
+    `erotate/rigid`, `rigid/local`;\n\
+    - `region mesh/tet`: `region mesh`; `region wedge`: `region intersect` of a cylinder and half-spaces;\n\
     - `insert/pack`, `insert/rate/region`, `insert/stream`: `fix insert` with `pack`, `rate`, `stream`;\n\
     - `heat/gran`, `heat/gran/conduction`: `fix property/atom temperature initial T`, `fix heat/flow … source`, and `heat contact` of \
     pair_coeff; `set … property/atom Temp|heatSource` sets these properties, `f_Temp[0]`, `f_heatFlux[0]`, `f_heatSource[0]` are \

@@ -120,6 +120,10 @@ pub struct Mesh {
     pub file: Word,
     #[word(flatten)]
     pub placing: Placing,
+    /// Turns the body by an angle about an axis through the origin, after `scale` and `shift`; several turns are made one after another
+    /// [degrees].
+    #[word(keyword, name = "X Y Z ANGLE")]
+    pub turn: Vec<(At<f64>, f64, f64, f64)>,
     #[word(flatten)]
     pub options: Options,
 }

@@ -1,12 +1,13 @@
 //! Grains of a stream on their way to the face: they fly straight, free of all forces, and are let go where they pass it.
 
 use super::Inserting;
+use super::clumps::launch;
 use perigrain_base::diag::Result;
 use perigrain_base::math::vec3::{Vec3, add, dot, length, scale, sub};
 use perigrain_plan::{
     About, Acts, BlockSums, Needs, Op, ParticleBlock, Room, Span as Rows, Stage, Tick, Way, fuse,
 };
-use perigrain_world::field::{BOX, F, LISTS, MEMO, OMEGA, TAG, TORQUE, TRAVEL, V, X};
+use perigrain_world::field::{BOX, COLUMNS, F, LISTS, MEMO, OMEGA, RIGID, TAG, TORQUE, TRAVEL, V, X};
 use perigrain_world::{Numbers, World};
 use std::ops::Range;
 use std::sync::Arc;
@@ -65,6 +66,8 @@ pub struct Flight {
     key: Numbers,
     normal: Vec3,
     speed: f64,
+    /// Keys of the bodies of grains of several spheres, and of the column with the number of each particle's body.
+    movers: Vec<(Numbers, Numbers)>,
     /// Places of the grains in storage, in the order of the memory.
     rows: Vec<Option<usize>>,
     /// The same places in ascending order.
@@ -78,7 +81,7 @@ type Going = Vec<(usize, Vec3, Vec3)>;
 
 impl Flight {
     /// The ops of a stream that flies along `normal`.
-    pub fn ops(fix: &Inserting, normal: Vec3, speed: f64) -> Vec<Box<dyn Op>> {
+    pub fn ops(fix: &Inserting, normal: Vec3, speed: f64, movers: &[(Numbers, Numbers)]) -> Vec<Box<dyn Op>> {
         let key: Numbers = fix.key().with("/held");
         let op = |part, what: &str| -> Box<dyn Op> {
             let name = format!("fix {} insert: {what}", fix.id);
@@ -88,6 +91,7 @@ impl Flight {
                 key,
                 normal,
                 speed,
+                movers: movers.to_vec(),
                 rows: vec![],
                 ascending: Arc::new([]),
                 stands: None,
@@ -195,6 +199,14 @@ impl Flight {
         if held.chunks_exact(NUMBERS).all(|row| row[4] >= least) {
             return;
         }
+        if !self.movers.is_empty() {
+            let go = held.chunks_exact(NUMBERS).zip(&self.rows).filter(|(row, _)| row[4] < least);
+            let go: Vec<(Held, usize)> = go.filter_map(|(row, i)| i.map(|i| (Held::of(row), i))).collect();
+            for (grain, i) in go {
+                launch(w, &self.movers, i, self.place(&grain), grain.v, grain.omega);
+            }
+        }
+        let Some(held) = w.memo.get_mut(self.key) else { return };
         let stays: Vec<bool> = held.chunks_exact(NUMBERS).map(|row| row[4] >= least).collect();
         let kept = held.chunks_exact(NUMBERS).zip(&stays).filter(|(_, stays)| **stays);
         let kept: Vec<f64> = kept.flat_map(|(row, _)| row.iter().copied()).collect();
@@ -230,7 +242,12 @@ fn act(block: &mut ParticleBlock<'_>, ascending: &[u32], going: &Going) {
 
 impl Op for Flight {
     fn about(&self) -> About {
-        let needs = Needs::new().read(TAG | BOX | LISTS).keep(MEMO).only(&[self.key.text()]);
+        let mut needs = Needs::new().read(TAG | BOX | LISTS).keep(MEMO).only(&[self.key.text()]);
+        if self.part == Part::Holds && !self.movers.is_empty() {
+            let names: Vec<&'static str> =
+                self.movers.iter().flat_map(|(a, b)| [a.text(), b.text()]).collect();
+            needs = needs.read(COLUMNS).keep(RIGID).only(&names);
+        }
         match self.part {
             Part::Flies => About {
                 reports_travel: true,

@@ -1,5 +1,6 @@
 //! fix insert: puts grains of a mixture into a region, or lets them stream through a face.
 
+mod clumps;
 mod face;
 mod flight;
 mod op;
@@ -9,6 +10,7 @@ mod words;
 
 use super::{Facts, Fix, FixStyle, needs_spheres};
 use crate::window::forget;
+use clumps::Orientation;
 use face::Face;
 use flight::Flight;
 use op::Source;
@@ -49,6 +51,11 @@ impl Style for Insert {
                    gets its own velocity and spin. `length` L makes a packet every L/(v_n Δt) steps; with `every` it is v_n N Δt \
                    long, or with `during` v_n du Δt, which leaves gaps. The face is where the fix's surface is when the line is \
                    read.\n\n\
+                   Grains of several spheres (`mixture … mol`) get molecule IDs of their own, and a `fix rigid/small … mol` of the same \
+                   template moves them, unless the template has bonds; `neigh_modify exclude molecule/intra all` keeps spheres of one grain \
+                   from pushing each other apart. Their centre of mass counts as their place, the sphere about it that holds them as \
+                   their size for `inside`, each of their spheres for overlaps. Of such grains that are in the region already each counts \
+                   by the part of its spheres inside.\n\n\
                    A region's part beyond fixed or periodic faces of the box is left out; volumes without a formula (unions, intersections) \
                    are counted on a lattice of 80 points along each axis. With `overlap no` grains may lie in each other, which a warning \
                    states. Runs continue where the last one ended, also after a restart, with grains on their way. Scalar: how many \
@@ -168,6 +175,8 @@ struct Inserting {
     omega: Vec3,
     overlap: bool,
     inside: bool,
+    /// How grains of several spheres are turned.
+    orientation: Orientation,
     /// The first step.
     start: Option<i64>,
 }
@@ -234,7 +243,7 @@ impl Fix for Inserting {
     fn to_come(&self, _: &World) -> Vec<ToCome> {
         let mask = GroupId::ALL.bit() | self.group.bit();
         let kinds = self.mixture.kinds.iter().filter(|kind| kind.share > 0.0);
-        kinds.map(|k| ToCome { kind: k.kind, mask, mass: k.mass(), radius: k.radius }).collect()
+        kinds.flat_map(|kind| clumps::to_come(kind, mask)).collect()
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -253,10 +262,11 @@ impl Fix for Inserting {
         let log = cx.log();
         let slot = cx.slot(&format!("f_{}", self.id));
         let dt = cx.world().clock.dt;
+        let movers = clumps::movers(&self.mixture, cx)?;
         let (every, packet) = self.rhythm(dt, span)?;
         let mut ops: Vec<Box<dyn Op>> = vec![];
         if let (Some(packet), Place::Face(face)) = (packet, &self.place) {
-            ops = Flight::ops(self, face.normal, packet.speed);
+            ops = Flight::ops(self, face.normal, packet.speed, &movers);
         }
         ops.push(Box::new(Source::new(self, cx.world(), (every, packet), (span, slot), &log)?));
         Ok(ops)

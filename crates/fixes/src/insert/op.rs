@@ -1,19 +1,22 @@
 //! The op of fix insert that makes grains.
 
+use super::clumps::{Inside, Placed};
 use super::flight::Held;
 use super::state::State;
 use super::{Content, Inserting, Packet, Place, Way};
 use crate::crowd::Crowd;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::math::body::{Quat, UNTURNED};
 use perigrain_base::math::rng::ParkMiller;
-use perigrain_base::math::vec3::{Vec3, add, scale};
+use perigrain_base::math::vec3::{Vec3, add, scale, sub};
 use perigrain_output::log::Log;
 use perigrain_plan::{About, Needs, Op, Span as Rows, Stage, Tick};
 use perigrain_styles::matter::publish;
-use perigrain_styles::newcomers::{Newcomer, admit};
+use perigrain_styles::newcomers::{Newcomer, admit, settle};
 use perigrain_world::field::{MASS, RADIUS, X};
 use perigrain_world::region::Near;
-use perigrain_world::{Domain, Fields, Numbers, SlotId, World, memory};
+use perigrain_world::template::Numbering;
+use perigrain_world::{Domain, Fields, Ingredient, Numbers, SlotId, World, memory};
 
 /// The op.
 pub struct Source {
@@ -31,11 +34,20 @@ pub struct Source {
     near: Vec<Near>,
 }
 
-/// Grains of one insertion; of a stream, where and how far from the face each of them passes it.
+/// A new grain; of a stream, where and how far from the face its centre passes it.
+struct Grain {
+    /// Its kind in the mixture.
+    which: usize,
+    x: Vec3,
+    v: Vec3,
+    turn: Quat,
+    foot: (Vec3, f64),
+}
+
+/// Grains of one insertion, kind by kind.
 #[derive(Default)]
 struct Batch {
-    grains: Vec<Newcomer>,
-    feet: Vec<(Vec3, f64)>,
+    grains: Vec<Grain>,
     mass: f64,
     missing: u64,
 }
@@ -84,15 +96,11 @@ impl Source {
         let fix = &self.fix;
         let exact = match (&fix.way, &fix.place) {
             (Way::Pack { content, .. }, Place::Region(place)) => {
-                let p = &w.particles;
-                let there = (0..p.len()).filter(|&i| place.contains(p.x[i]));
+                let there = Inside::of(place, &fix.mixture, w);
                 match content {
-                    Content::Number(n) => n - there.count() as f64,
-                    Content::Mass(m) => (m - there.map(|i| p.mass[i]).sum::<f64>()) / fix.mixture.mean_mass(),
-                    Content::Share(f) => {
-                        let ball = |i: usize| 4.0 / 3.0 * std::f64::consts::PI * p.radius[i].powi(3);
-                        (f * place.volume - there.map(ball).sum::<f64>()) / fix.mixture.mean_volume()
-                    }
+                    Content::Number(n) => n - there.number,
+                    Content::Mass(m) => (m - there.mass) / fix.mixture.mean_mass(),
+                    Content::Share(f) => (f * place.volume - there.volume) / fix.mixture.mean_volume(),
                 }
             }
             (Way::Rate { flow, .. } | Way::Stream { flow, .. }, _) => {
@@ -115,7 +123,7 @@ impl Source {
         let (mut made, mut left) = (Batch::default(), n.saturating_mul(fix.tries));
         let counts = fix.mixture.counts(n, stream);
         let region = matches!(fix.place, Place::Region(_));
-        for (kind, count) in fix.mixture.kinds.iter().zip(counts) {
+        for ((which, kind), count) in fix.mixture.kinds.iter().enumerate().zip(counts) {
             // Of this size none fits into the region, be it empty.
             let mut never = false;
             for _ in 0..count {
@@ -124,43 +132,86 @@ impl Source {
                     left -= 1;
                     let drawn = fix.draw(self.packet, kind.radius, stream, &mut self.near);
                     never = region && drawn.is_none();
-                    found = drawn.filter(|(x, _)| !fix.overlap || crowd.fits(*x, kind.radius));
+                    let turn = if kind.clump.is_some() { fix.orientation.draw(stream) } else { UNTURNED };
+                    let fits = |x: Vec3| kind.spheres(x, turn).iter().all(|(x, r)| crowd.fits(*x, *r));
+                    let drawn = drawn.filter(|(x, _)| !fix.overlap || fits(*x));
+                    found = drawn.map(|(x, foot)| (x, turn, foot));
                 }
-                let Some((x, foot)) = found else {
+                let Some((x, turn, foot)) = found else {
                     made.missing += 1;
                     continue;
                 };
-                crowd.add(x, kind.radius);
+                kind.spheres(x, turn).iter().for_each(|(x, r)| crowd.add(*x, *r));
                 let v = fix.spread.draw(fix.mean, stream);
-                made.grains.push(Newcomer { kind: kind.kind, x, v, size: Some([kind.radius, kind.density]) });
-                made.feet.push(foot);
+                made.grains.push(Grain { which, x, v, turn, foot });
                 made.mass += kind.mass();
             }
         }
         Ok(made)
     }
 
-    /// Puts the grains into the scene; those of a stream are held.
+    /// Puts the grains into the scene, kind by kind; those of a stream are held.
     fn admit(&self, w: &mut World, made: &Batch) -> Result<()> {
         let (first, tag) = (w.n(), w.particles.last_tag().saturating_add(1));
-        admit(w, self.fix.group, tag, &made.grains)?;
         let omega = self.fix.omega;
+        let (mut held, mut bonds) = (vec![], false);
+        for grains in made.grains.chunk_by(|a, b| a.which == b.which) {
+            let kind = &self.fix.mixture.kinds[grains[0].which];
+            match &kind.clump {
+                Some(clump) => {
+                    w.fall_back();
+                    let mut numbers = Numbering::behind(w, 0);
+                    for grain in grains {
+                        let Grain { x, v, turn, .. } = *grain;
+                        let placed = Placed { clump, places: clump.places(x, turn), x, turn, v, omega };
+                        held.extend((0..clump.template.count).map(|k| {
+                            let (foot, left) = grain.foot;
+                            (add(foot, sub(placed.places[k], x)), left, placed.velocity(k))
+                        }));
+                        placed.admit(w, self.fix.group, &mut numbers)?;
+                    }
+                    bonds |= !clump.template.bonds.is_empty();
+                    settle(w);
+                }
+                None => {
+                    let start = w.n();
+                    let size = Some([kind.radius, kind.density]);
+                    let list =
+                        grains.iter().map(|grain| Newcomer { kind: kind.kind, x: grain.x, v: grain.v, size });
+                    let next = w.particles.last_tag().saturating_add(1);
+                    admit(w, self.fix.group, next, &list.collect::<Vec<_>>())?;
+                    w.particles.omega[start..].fill(omega);
+                    held.extend(grains.iter().map(|grain| (grain.foot.0, grain.foot.1, grain.v)));
+                }
+            }
+        }
+        if bonds {
+            w.bonds.find_special();
+        }
         if let (Some(packet), Place::Face(face)) = (self.packet, &self.fix.place) {
-            let flies = scale(packet.speed, face.normal);
-            w.particles.v[first..].fill(flies);
-            let held = made.grains.iter().zip(&made.feet).zip(tag..);
-            let held = held.map(|((grain, (foot, left)), tag)| Held {
-                tag,
-                foot: *foot,
-                left: *left,
-                v: grain.v,
-                omega,
-            });
+            w.particles.v[first..].fill(scale(packet.speed, face.normal));
+            w.particles.omega[first..].fill([0.0; 3]);
+            let held = held.into_iter().zip(tag..);
+            let held = held.map(|((foot, left, v), tag)| Held { tag, foot, left, v, omega });
             Held::add(w, self.held, tag, held);
-        } else {
-            w.particles.omega[first..].fill(omega);
         }
         Ok(())
+    }
+}
+
+/// Spheres of a grain of this kind at a place.
+trait Spheres {
+    fn spheres(&self, x: Vec3, turn: Quat) -> Vec<(Vec3, f64)>;
+}
+
+impl Spheres for Ingredient {
+    fn spheres(&self, x: Vec3, turn: Quat) -> Vec<(Vec3, f64)> {
+        match &self.clump {
+            Some(clump) => {
+                clump.places(x, turn).into_iter().zip(clump.template.radii.iter().copied()).collect()
+            }
+            None => vec![(x, self.radius)],
+        }
     }
 }
 
@@ -192,9 +243,9 @@ impl Inserting {
             Place::Region(place) => (place.lo, place.hi),
             Place::Face(face) => face.bounds(packet.map_or(0.0, |packet| packet.length)),
         };
-        let (p, own) = (&w.particles, self.mixture.widest());
-        let widest = if self.overlap { p.radius.iter().fold(own, |a, r| r.max(a)) } else { own };
-        let mut crowd = Crowd::new(domain, lo, hi, own + widest, p.len() + n as usize);
+        let (p, own, largest) = (&w.particles, self.mixture.widest(), self.mixture.largest());
+        let widest = if self.overlap { p.radius.iter().fold(largest, |a, r| r.max(a)) } else { largest };
+        let mut crowd = Crowd::new(domain, lo, hi, largest + widest, p.len() + n as usize);
         if !self.overlap {
             return crowd;
         }

@@ -1,5 +1,6 @@
 //! The words of fix insert.
 
+use super::clumps::{Orientation, check};
 use super::face::{Face, Fault};
 use super::place::Bounded;
 use super::{Content, Flow, Inserting, Packets, Place, Spread, Way};
@@ -67,6 +68,9 @@ pub struct Line {
     /// Whether whole grains lie inside, and not their centres alone.
     #[word(keyword, default = false)]
     inside: bool,
+    /// How grains of several spheres are turned.
+    #[word(keyword, default = Orientation::Template)]
+    orientation: Orientation,
     /// The step of the first insertion: without it the one after the line.
     #[word(keyword, name = "step", from = 0)]
     start: Option<i64>,
@@ -191,6 +195,7 @@ pub fn build(args: &mut Args, cx: &BuildCx) -> Result<Inserting> {
     refuse_foreign(&line)?;
     let Velocity(mean, spread) = line.vel.unwrap_or(Velocity([0.0; 3], Spread::None));
     let mixture = line.mixture.0;
+    check(&mixture, cx)?;
     let named = Named { way: line.way, end: args.here() };
     let place = match line.way.value {
         Kinds::Stream => Place::Face(Arc::new(face(named.face(line.face)?, mean, cx)?)),
@@ -251,6 +256,7 @@ pub fn build(args: &mut Args, cx: &BuildCx) -> Result<Inserting> {
         omega: line.omega,
         overlap: line.overlap,
         inside: line.inside,
+        orientation: line.orientation,
         start: line.start,
     })
 }

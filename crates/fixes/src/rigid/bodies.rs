@@ -1,7 +1,6 @@
 //! The state of rigid bodies: their particles, masses, positions and motion.
 
 use super::Declared;
-use super::mold::Mold;
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_base::math::body::{Quat, apply, axes, from_axes, principal};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
@@ -57,6 +56,10 @@ impl Declared {
         let is = |g: GroupId| p.mask[i] & g.bit() != 0;
         let value = match &self.split {
             Split::Single => 0.0,
+            // Single spheres beside copies of templates.
+            Split::Molecule if p.molecule[i] == 0 && !self.molds.is_empty() && !w.settings.lammps() => {
+                return Ok(None);
+            }
             Split::Molecule => f64::from(p.molecule[i]),
             Split::Custom(column) => {
                 w.columns.get_scalar(*column).and_then(|c| c.get(i)).copied().unwrap_or(0.0)
@@ -128,8 +131,8 @@ impl Declared {
         self.weigh(w, &all, 0.0);
         self.store(w, &[]);
         // LAMMPS uses the template only for particles inserted during a run.
-        let mold = self.mold.as_ref().filter(|mold| mold.gives() && !w.settings.lammps());
-        self.enter(w, &list, mold, |i| {
+        let casts = self.casts() && !w.settings.lammps();
+        self.enter(w, &list, casts, |i| {
             let number = before.1.get(i).copied().unwrap_or(0.0) as usize;
             number.checked_sub(1).and_then(|k| before.0.get(k)).map(|b| b.q)
         });
@@ -145,7 +148,7 @@ impl Declared {
         let body = w.columns.get_scalar(self.keys.body).unwrap_or_default();
         let list = self.loose(w, body, span)?;
         if !list.is_empty() {
-            self.enter(w, &list, self.mold.as_ref().filter(|mold| mold.gives()), |_| None);
+            self.enter(w, &list, self.casts(), |_| None);
         }
         self.hold_members(w);
         Ok(())
@@ -165,19 +168,20 @@ impl Declared {
         new.into_iter().for_each(|(i, q)| self.keys.turn.take(w, i, q));
     }
 
-    /// Makes bodies; `before` gives the previous orientation of a particle's body.
+    /// Makes bodies, with `casts` by their templates; `before` gives the previous orientation of a particle's body.
     fn enter(
         &self,
         w: &mut World,
         list: &[(f64, Vec<usize>)],
-        mold: Option<&Mold>,
+        casts: bool,
         before: impl Fn(usize) -> Option<Quat>,
     ) {
         let n = w.n();
         let mut bodies = self.load(w);
         for (name, members) in list {
             let sum = of_particles(w, members);
-            let cast = mold.and_then(|mold| mold.cast(w, members, &sum, before(members[0])));
+            let mut molds = self.molds.iter().filter(|mold| casts && mold.gives());
+            let cast = molds.find_map(|mold| mold.cast(w, members, &sum, before(members[0])));
             let body = Body { name: *name, ..cast.unwrap_or(sum) };
             bodies.push(body);
             let number = bodies.len() as f64;

@@ -2,6 +2,7 @@
 //! particles.
 
 use super::Declared;
+use super::mold::Mold;
 use perigrain_base::diag::{Code, Diagnostic, Result, Span};
 use perigrain_base::math::vec3::{Vec3, add, cross, scale, sub};
 use perigrain_styles::matter::Masses;
@@ -63,6 +64,8 @@ impl Weight {
         let pulling: Vec<&Gravity> = all.iter().filter(other).collect();
         let note = match named {
             Some(_) => named.filter(shares).map(|g| twice(g, span)),
+            // LAMMPS has no mixtures.
+            None if fix.infile.is_none() && !fix.molds.iter().any(Mold::reads) => None,
             None => pulling.iter().copied().find(shares).map(|g| mass_warning(fix, g, lammps, span)),
         };
         note.into_iter().for_each(|note| w.notes.push(note));
@@ -133,7 +136,7 @@ impl Pulls {
         let mut force = self.centre.map_or([0.0; 3], |a| scale(mass, a));
         let mut torque = [0.0; 3];
         for (bit, a) in &self.particles {
-            if !members.clone().all(|(.., mask)| mask & bit != 0) {
+            if members.clone().next().is_none() || !members.clone().all(|(.., mask)| mask & bit != 0) {
                 continue;
             }
             let (mut sum, mut lever) = (0.0, [0.0; 3]);

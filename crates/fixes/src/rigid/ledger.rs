@@ -25,7 +25,9 @@ impl Declared {
                 beyond[0] -= m * dot(p.v[i], p.v[i]);
                 beyond[1] -= p.omega.get(i).map_or(0.0, |o| 0.4 * m * r * r * dot(*o, *o));
             }
-            let all = crew.members(k).iter().map(|&i| (masses.get(i), sub(unwrapped(w, i), b.x), p.mask[i]));
+            let free = crew.members(k).iter().all(|&i| p.f[i] == [0.0; 3]);
+            let all = crew.members(k).iter().filter(|_| !free);
+            let all = all.map(|&i| (masses.get(i), sub(unwrapped(w, i), b.x), p.mask[i]));
             let [force, torque] = pulls.on(b.mass, all);
             beyond[2] += dot(force, b.v) + dot(torque, b.omega);
         }

@@ -23,9 +23,20 @@ pub struct Mold {
 }
 
 impl Mold {
+    /// As the template is now: a mixture may have given it a mass since.
+    pub fn now(&self, w: &World) -> Self {
+        let set = w.templates.get(&self.name).unwrap_or(&self.set).clone();
+        Self { name: self.name.clone(), set }
+    }
+
     /// Whether it gives a value that is not the sum over particles.
     pub fn gives(&self) -> bool {
         self.set.iter().any(gives)
+    }
+
+    /// Whether a file gives such a value, and not a mixture by its density.
+    pub fn reads(&self) -> bool {
+        self.set.iter().any(|t| gives(t) && t.density.is_none())
     }
 
     /// The body of these particles if they are a copy of such a template; `sum` is the body summed from the

@@ -265,7 +265,9 @@ impl Pass<'_> {
             }
         }
         if !self.pulls.is_none() {
-            let all = members.iter().map(|&i| member(&self.masses, &p.mask, i, away(i)));
+            // Where forces have been taken from all particles, no weight is among them that the body's could replace.
+            let free = members.iter().all(|&i| p.f[i] == [0.0; 3]);
+            let all = members.iter().filter(|_| !free).map(|&i| member(&self.masses, &p.mask, i, away(i)));
             let [weight, turning] = self.pulls.on(row[1], all);
             (force, torque) = (add(force, weight), add(torque, turning));
         }

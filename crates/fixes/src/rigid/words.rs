@@ -29,11 +29,12 @@ pub struct Large {
 pub struct Small {
     #[word(name = "bodies")]
     pub bodies: Many,
-    /// The template that bodies come from. Where its file gives `mass`, `com` or `inertia` of the whole, bodies that are copies of
-    /// it have these instead of the sums over their particles, however they came: by `create_atoms`, `fix pour` or `fix deposit`,
-    /// and in later runs too.
+    /// A template that bodies come from, several times for several ones. Where its file or a `mixture` gives `mass`, `com` or `inertia` of the whole, bodies that are copies of
+    /// it have these instead of the sums over their particles, however they came: by `create_atoms`, `fix insert`,
+    /// `fix pour` or `fix deposit`, and in later runs too. Particles whose molecule ID is 0 belong to no body then (under `compat lammps`
+    /// they make one).
     #[word(keyword, name = "TEMPLATE", with = mold, kind = Kind::Molecule)]
-    pub mol: Option<Mold>,
+    pub mol: Vec<Mold>,
     #[word(flatten)]
     pub common: Common,
 }
