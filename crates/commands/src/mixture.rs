@@ -23,7 +23,8 @@ impl Style for MixtureCommand {
             text: "Not in LAMMPS. A share of the mass counts w/m grains, with m the mass of a grain of that kind; a share of the \
                    number counts w. Shares that do not sum to 1 are divided by their sum, with a warning. Of N grains that are \
                    inserted at a time, each kind gets N times its share of the number, rounded down; only the rest is drawn at random, \
-                   by what was cut off. The largest grains find their places first. A restart file does not hold mixtures: the line \
+                   by what was cut off. The largest grains find their places first. A later line with the same ID replaces the mixture for \
+                   fixes below it; those above keep what they have. A restart file does not hold mixtures: the line \
                    stands again in the deck that reads it.\n\n\
                    Source: LIGGGHTS manual, fix particledistribution/discrete, whose shares are those of the mass by default; how many \
                    of each kind a batch holds: measured with LIGGGHTS 3.8.0.",
@@ -78,9 +79,6 @@ impl CommandStyle for MixtureCommand {
         }
         let Line { id: word, by, seed, kinds } = read(a, cx)?;
         let id = common::id(&word, "the mixture's ID")?;
-        if cx.world.mixtures.contains_key(&id) {
-            return fail(Code::DUPLICATE_NAME, word.span, format!("there is a mixture `{id}` already"));
-        }
         let list: Vec<Ingredient> = kinds
             .iter()
             .map(|At { value: Grains::Sphere(kind, diameter, density, share), .. }| Ingredient {
@@ -141,7 +139,8 @@ mod tests {
         }
         assert!(refused(&w, "mixture m number 1 sphere 1 1 1 0").1.contains("sum to 0"));
         act(&mut w, "mixture m number 1 sphere 1 1 1 1", &[]).unwrap();
-        assert_eq!(refused(&w, "mixture m number 1 sphere 1 1 1 1").0, "m");
+        act(&mut w, "mixture m number 1 sphere 1 4 1 1", &[]).unwrap();
+        assert_eq!(w.mixtures["m"].kinds[0].radius, 2.0);
         assert!(
             refused(&scene("region b block 0 1 0 1 0 1\ncreate_box 1 b"), "mixture m").1.contains("radius")
         );

@@ -7,7 +7,8 @@ use crate::reading::{choice, number, rounded, unknown};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command, Word, blame};
 
-const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinder", "ycylinder", "zcylinder"];
+/// The places of walls without a file.
+pub(crate) const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinder", "ycylinder", "zcylinder"];
 const KEYWORDS: &[&str] =
     &["primitive", "mesh", "shear", "temperature", "store_force", "store_force_contact"];
 
@@ -49,6 +50,9 @@ impl Translator {
             args.next();
             more.extend(self.more(&word, args)?);
         }
+        if place.on_mesh {
+            self.mesh_wall = Some(cmd.args[0].clone());
+        }
         let style = if place.on_mesh { "wall/mesh" } else { "wall/gran" };
         let mut line = Line::styled(cmd, style);
         self.law_of_wall(&mut line, &given, &place)?;
@@ -89,12 +93,12 @@ impl Translator {
             kinds.push(self.surface_of(&word)?.kind.clone());
             words.push(word);
         }
-        if let Some(k) = kinds.iter().position(|kind| kind.text != kinds[0].text) {
-            let text = format!("surface `{}` has another type than `{}`", words[k + 1].text, words[1].text);
-            let d = Diagnostic::error(Code::NO_COUNTERPART, words[k + 1].span, text);
-            return Err(d.help("write one `fix wall/gran` for the surfaces of each type").into());
+        let mut kind = kinds.swap_remove(0);
+        if kinds.iter().any(|other| other.text != kind.text) {
+            // Each surface has its own.
+            kind = Word::new("NULL", head);
         }
-        Ok(Place { kind: kinds.swap_remove(0), words, on_mesh: true })
+        Ok(Place { kind, words, on_mesh: true })
     }
 
     /// What may follow the place of a wall.
@@ -170,7 +174,9 @@ impl Translator {
                 .into());
         }
         line.put("granular", given.normal);
-        self.law(line, given, 0, 0)
+        self.law(line, given, 0, 0)?;
+        line.put("arms middle", given.normal);
+        Ok(())
     }
 }
 
