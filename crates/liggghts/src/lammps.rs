@@ -90,7 +90,7 @@ fn only(law: Vec<&str>, parts: &[&str]) -> String {
         return law.join(" ");
     }
     let tail: Vec<&str> = law[from..].iter().copied().filter(|w| *w == "limit_damping").collect();
-    [&law[..from], &["tangential", "none"], &tail].concat().join(" ")
+    [&law[..from], &["tangential", "linear_nohistory", "0", "0"], &tail].concat().join(" ")
 }
 
 /// Whether a line is a wall whose law is still to come.
@@ -150,10 +150,19 @@ fn coefficients(cmd: &Command) -> Result<String, Lost> {
     if has("hooke/velocity") || has("hooke/hysteresis") {
         return Err("no such normal law");
     }
-    if has("slip") {
+    let gliding = has("linear_nohistory");
+    if has("slip") && !gliding {
         return Err("the spring of `mindlin` slides otherwise: leave `slip spring` out");
     }
     let mut words: Vec<Word> = cmd.args.clone();
+    if let Some(k) = words.iter().position(|w| w.text == "slip").filter(|_| gliding) {
+        // LAMMPS has the full radii as arms of slip there: a difference of d/2R.
+        words.drain(k..k + 2);
+    }
+    if let Some(k) = words.iter().position(|w| w.text == "none") {
+        // LAMMPS wants a tangential model.
+        words.splice(k..=k, ["linear_nohistory", "0", "0"].map(|text| Word::new(text, cmd.span)));
+    }
     if has("material") {
         return pseudo(&words).ok_or("two materials in one formula");
     }

@@ -66,6 +66,8 @@ pub struct Translator {
     templates: BTreeMap<String, mixtures::Template>,
     mixtures: BTreeSet<String>,
     surfaces: BTreeMap<String, meshes::Surface>,
+    /// Models of walls above `pair_style`.
+    early: Vec<model::Given>,
     /// The wall on surfaces, of which LIGGGHTS has one.
     mesh_wall: Option<Word>,
     /// IDs of fixes that are only here.

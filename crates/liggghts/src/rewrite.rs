@@ -108,7 +108,14 @@ impl Other {
     /// A line that is the same in both, or has no counterpart.
     fn same(&mut self, out: &mut Rewritten, cmd: &Command, whole: &str) {
         let text = self.line(out, cmd);
-        out.text += if text == cmd.text { whole } else { &text };
+        if text == cmd.text {
+            out.text += whole;
+            return;
+        }
+        out.text += &text;
+        if whole.ends_with('\n') {
+            out.text.push('\n');
+        }
     }
 
     /// Writes the walls in the places of their marks.

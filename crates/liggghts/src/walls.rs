@@ -143,6 +143,9 @@ impl Translator {
     fn law_of_wall(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let at = given.normal;
         let of_pair = self.pair.as_ref().map(|(_, pair)| pair.model.clone());
+        if of_pair.is_none() {
+            self.early.push(given.clone());
+        }
         let narrower = of_pair.as_ref().is_none_or(|pair| fits(&given.model, pair));
         if !narrower {
             return self.own_law(line, given, place);
@@ -151,6 +154,7 @@ impl Translator {
         if of_pair.as_ref() != Some(&given.model) {
             line.put("only normal damping", at);
             let model = &given.model;
+            line.put(if model.limit { "limit" } else { "" }, at);
             for (has, name, at) in [
                 (model.tangential != Tangential::Off, "tangential", given.tangential),
                 (model.rolling != Rolling::Off, "rolling", given.rolling),
@@ -160,6 +164,16 @@ impl Translator {
             }
         }
         Ok(())
+    }
+
+    /// Walls above the `pair_style` line, whose models must be that of the grains or leave parts of it out.
+    pub(crate) fn early_walls(&mut self, pair: &Model) -> Result<()> {
+        let Some(wall) = std::mem::take(&mut self.early).into_iter().find(|w| !fits(&w.model, pair)) else {
+            return Ok(());
+        };
+        let text = "the model of this wall has what the model of `pair_style`, below it, does not have";
+        let d = blame(&wall.reader, Code::NO_COUNTERPART, text);
+        Err(d.help("write `pair_style` and `pair_coeff` above the walls").into())
     }
 
     /// A wall with a law of its own, in a deck of one atom type.
@@ -190,6 +204,6 @@ fn fits(wall: &Model, pair: &Model) -> bool {
         wall.rolling == Rolling::Off || (wall.rolling == pair.rolling && wall.torsion == pair.torsion);
     let cohesion =
         wall.cohesion == Cohesion::Off || (wall.cohesion == pair.cohesion && wall.reduce == pair.reduce);
-    let normal = wall.normal == pair.normal && wall.limit == pair.limit && wall.absolute == pair.absolute;
+    let normal = wall.normal == pair.normal && wall.limit <= pair.limit && wall.absolute == pair.absolute;
     normal && tangential && rolling && cohesion
 }

@@ -83,12 +83,7 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Lines(|_, cmd, args| Ok(properties::atom_property(cmd, args)?.map(|l| vec![l]))),
     ),
-    entry(
-        "fix",
-        "particletemplate/sphere",
-        true,
-        Take::Lines(|t, cmd, args| t.template(cmd, args).map(|()| Some(vec![]))),
-    ),
+    entry("fix", "particletemplate/sphere", true, Take::Lines(|t, cmd, args| t.template(cmd, args))),
     entry(
         "fix",
         "particletemplate/multisphere",

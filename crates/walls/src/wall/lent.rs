@@ -29,6 +29,8 @@ enum Section {
     Twisting,
     Cohesion,
     Heat,
+    /// `limit_damping`, where the law has it.
+    Limit,
 }
 
 impl Lent {
@@ -125,6 +127,7 @@ impl Lent {
         if !has(Section::Heat) {
             law.heat = Heat::None;
         }
+        law.limit_damping &= has(Section::Limit);
         law
     }
 }
