@@ -208,6 +208,18 @@ fn walls_lean_on_the_law_of_the_grains() {
         let lines = behind(&format!("{pair}fix w all wall/gran {wall}\n"));
         assert_eq!(lines[1], format!("fix w all {wanted}"));
     }
+    // A wall may leave out the spring of friction, or what limits the dashpot.
+    let softer = behind(
+        "pair_style gran model hertz tangential history limitForce on\n\
+         fix w all wall/gran model hertz tangential no_history primitive type 1 zplane 0.\n\
+         fix v all wall/gran model hertz tangential history primitive type 1 zplane 0. limitForce on\n",
+    );
+    assert_eq!(softer[1], "fix w all wall/gran coeff 1 only normal damping no_history zplane 0. NULL");
+    assert_eq!(softer[2], "fix v all wall/gran coeff 1 zplane 0. NULL");
+    let d = wrong(
+        "fix w all wall/gran model hertz tangential history primitive type 1 zplane 0.\npair_style gran model hertz\n",
+    );
+    assert_eq!((d.0[0].code, d.0.len()), (Code::NO_COUNTERPART, 1), "{d}");
     // Above `pair_style` the parts of a wall are all that is known.
     let early = behind("fix w all wall/gran model hertz tangential history primitive type 1 zplane 0.\n");
     assert_eq!(early, ["fix w all wall/gran coeff 1 only normal damping tangential zplane 0. NULL"]);

@@ -156,7 +156,8 @@ impl Translator {
             let model = &given.model;
             line.put(if model.limit { "limit" } else { "" }, at);
             for (has, name, at) in [
-                (model.tangential != Tangential::Off, "tangential", given.tangential),
+                (model.tangential == Tangential::History, "tangential", given.tangential),
+                (model.tangential == Tangential::NoHistory, "no_history", given.tangential),
                 (model.rolling != Rolling::Off, "rolling", given.rolling),
                 (model.cohesion != Cohesion::Off, "cohesion", given.cohesion),
             ] {
@@ -197,7 +198,7 @@ impl Translator {
 /// Whether a wall's model is that of the grains, or leaves parts of it out.
 fn fits(wall: &Model, pair: &Model) -> bool {
     let tangential = wall.tangential == Tangential::Off
-        || (wall.tangential == pair.tangential
+        || ((wall.tangential == pair.tangential || pair.tangential == Tangential::History)
             && wall.undamped == pair.undamped
             && wall.softer == pair.softer);
     let rolling =

@@ -2,7 +2,7 @@
 
 use super::words::Ruled;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_contact::{Arm, Cohesion, Granular, Heat, Model, Rolling, Twisting};
+use perigrain_contact::{Arm, Cohesion, Friction, Granular, Heat, Model, Rolling, Twisting};
 use perigrain_pairs::GRANULAR_RULES;
 use perigrain_styles::words::{At, Nullable, OneType, Words};
 use perigrain_world::World;
@@ -25,6 +25,9 @@ enum Section {
     Normal,
     Damping,
     Tangential,
+    /// The friction of the law without its spring: γ_t v_t, at most μ F_n.
+    #[word("no_history")]
+    NoHistory,
     Rolling,
     Twisting,
     Cohesion,
@@ -112,8 +115,12 @@ impl Lent {
         if !has(Section::Damping) {
             (law.damping, law.damping_constant) = (none.damping, none.damping_constant);
         }
-        if !has(Section::Tangential) {
+        let glides = self.only.contains(&Section::NoHistory);
+        if !has(Section::Tangential) && !glides {
             law.spring = none.spring;
+        }
+        if glides && law.spring.kind != Friction::None {
+            law.spring.kind = Friction::LinearNohistory;
         }
         if !has(Section::Rolling) {
             law.rolling = Rolling::None;
