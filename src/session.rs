@@ -298,6 +298,7 @@ impl Session {
         if self.checking() && !self.blind {
             let given: Vec<String> = self.options.vars.iter().map(|v| v.0.clone()).collect();
             self.notes.append(unused::unused(&self.sources, &given));
+            self.notes.append(self.dialect.unused());
         }
         let flushed = self.options.log.flush();
         let ending = outcome?;

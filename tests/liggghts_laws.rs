@@ -286,7 +286,7 @@ fn bridges_form_at_touch_and_rupture_at_their_distance() {
     let theta = angle.to_radians();
     let rupture = (1.0 + 0.5 * theta) * volume.cbrt();
     let most = 2.0 * std::f64::consts::PI * 0.001 * tension * theta.cos();
-    // Willett et al. 2000, eq. 12, with the radius of equal spheres.
+    // Willett et al. 2000, the short fit, with the radius of equal spheres.
     let pull = |h: f64| {
         let s = h * (0.001 / volume).sqrt();
         -most / (1.0 + 1.05 * s + 2.5 * s * s)

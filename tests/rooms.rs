@@ -44,7 +44,7 @@ const ARROWS: &[(&str, &[&str])] = &[
         "pairs",
         &["base", "bonded", "constitutive", "contact", "lang", "neigh", "peri", "plan", "styles", "world"],
     ),
-    ("walls", &["base", "contact", "lang", "mesh", "pairs", "plan", "styles", "world"]),
+    ("walls", &["base", "contact", "lang", "mesh", "output", "pairs", "plan", "styles", "world"]),
     ("computes", &["base", "commands", "lang", "neigh", "peri", "plan", "statics", "styles", "world"]),
     ("dumps", &["base", "computes", "lang", "output", "plan", "styles", "world"]),
     // The Python module knows the program, and of what is below only what that shows.

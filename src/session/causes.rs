@@ -8,6 +8,8 @@ use std::collections::BTreeSet;
 #[derive(Default)]
 pub(super) struct Refused {
     names: BTreeSet<String>,
+    /// Messages about groups that there are not.
+    groups: BTreeSet<String>,
     scene: bool,
     /// A step table was refused, so that its columns are unknown.
     table: bool,
@@ -60,7 +62,10 @@ impl Refused {
         let elsewhere = problems.0.iter().any(|d| d.code == Code::NOT_SUPPORTED);
         let foreign = problems.0.iter().any(|d| d.code == Code::NO_COUNTERPART);
         let subjects: Vec<String> = problems.0.iter().filter_map(subject).collect();
+        let unknown_groups: Vec<String> =
+            problems.0.iter().filter(|d| d.code == Code::UNKNOWN_GROUP).map(|d| d.message.clone()).collect();
         let causes = problems.0.into_iter().filter(|d| !self.explains(d)).collect();
+        self.groups.extend(unknown_groups);
         let mut words = line.split_whitespace();
         let (command, first) = (words.next().unwrap_or(""), words.next());
         self.table |= command == "thermo_style";
@@ -94,6 +99,8 @@ impl Refused {
         }
         match d.code {
             Code::UNKNOWN_NAME if self.table && d.message.starts_with("no thermo column") => true,
+            // A group that is missing is one mistake, in however many lines it stands.
+            Code::UNKNOWN_GROUP if self.groups.contains(&d.message) => true,
             code if code.is_unknown_name() || code == Code::DUPLICATE_NAME => {
                 self.names.iter().any(|n| d.message.contains(&format!("`{n}`")))
             }

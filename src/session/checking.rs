@@ -160,13 +160,17 @@ impl Session {
         }
     }
 
-    /// Whether every particle there is comes from a fix pour or insert, which gives it a diameter and a density.
+    /// Whether every particle there is comes from a fix pour or insert, which gives it a diameter and a density; none comes where the
+    /// line of that fix was refused.
     fn all_are_poured(&self) -> bool {
         let pours = |text: &str| {
             let mut words = text.split_whitespace();
             words.next() == Some("fix") && matches!(words.nth(2), Some("pour" | "insert"))
         };
-        !self.settled("particles") && self.graph.lines.nodes().iter().any(|n| pours(&n.text))
+        let makes = |f: &crate::graph::FixNode| f.fix.facts(&self.world).makes_particles;
+        !self.settled("particles")
+            && (self.graph.lines.nodes().iter().any(|n| pours(&n.text))
+                || !self.graph.fixes.iter().any(makes))
     }
 
     /// Force densities and forces added up in one column.

@@ -34,6 +34,13 @@ impl Dialect {
     }
 }
 
+impl Dialect {
+    /// Warnings about what the deck defines and never uses.
+    pub(super) fn unused(&self) -> Diagnostics {
+        self.translator.as_ref().map_or_else(Diagnostics::default, |translator| translator.unused())
+    }
+}
+
 impl Session {
     /// The native lines of a line of LIGGGHTS; `None` where the line is native itself.
     ///

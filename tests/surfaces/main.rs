@@ -5,6 +5,7 @@
 mod contacts;
 mod movers;
 mod pressing;
+mod tables;
 mod through;
 
 use crate::decks::run_in;

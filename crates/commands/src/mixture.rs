@@ -32,7 +32,7 @@ impl Style for MixtureCommand {
                    those of the space that the spheres fill, at one density. What several spheres have in common counts once; the error \
                    is below 1e-9. The masses of the spheres sum to that of the grain, in the ratio of their volumes. Where the template \
                    has a mass of its own, the density gives the volume. With `fix rigid/small … mol` such grains move as bodies.\n\n\
-                   A restart file does not hold mixtures: the line \
+                   A later line with the same ID replaces the mixture for fixes below it; those above keep what they have. A restart file does not hold mixtures: the line \
                    stands again in the deck that reads it.\n\n\
                    Source: LIGGGHTS manual, fix particledistribution/discrete, whose shares are those of the mass by default; how many \
                    of each kind a batch holds: measured with LIGGGHTS 3.8.0.",
@@ -93,9 +93,6 @@ impl CommandStyle for MixtureCommand {
         }
         let Line { id: word, by, seed, kinds } = read(a, cx)?;
         let id = common::id(&word, "the mixture's ID")?;
-        if cx.world.mixtures.contains_key(&id) {
-            return fail(Code::DUPLICATE_NAME, word.span, format!("there is a mixture `{id}` already"));
-        }
         let list: Vec<Ingredient> =
             kinds.iter().map(|kind| ingredient(&kind.value, cx)).collect::<Result<_>>()?;
         let place = kinds[0].span.to(kinds[kinds.len() - 1].span);
@@ -265,7 +262,8 @@ mod tests {
         }
         assert!(refused(&w, "mixture m number 1 sphere 1 1 1 0").1.contains("sum to 0"));
         act(&mut w, "mixture m number 1 sphere 1 1 1 1", &[]).unwrap();
-        assert_eq!(refused(&w, "mixture m number 1 sphere 1 1 1 1").0, "m");
+        act(&mut w, "mixture m number 1 sphere 1 4 1 1", &[]).unwrap();
+        assert_eq!(w.mixtures["m"].kinds[0].radius, 2.0);
         assert!(
             refused(&scene("region b block 0 1 0 1 0 1\ncreate_box 1 b"), "mixture m").1.contains("radius")
         );

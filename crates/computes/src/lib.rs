@@ -61,6 +61,7 @@ mod temp_region;
 mod temp_sphere;
 mod thermal;
 mod vacf;
+mod wall_local;
 
 use perigrain_base::diag::{Code, Diagnostic, Result, fail};
 use perigrain_lang::Args;
@@ -145,6 +146,7 @@ pub const COMPUTES: &[&dyn ComputeStyle] = &[
     &temp_region::TempRegion,
     &temp_sphere::TempSphere,
     &vacf::Vacf,
+    &wall_local::WallLocal,
 ];
 
 /// Selected terms of the potential energy.

@@ -29,6 +29,7 @@ impl Translator {
                 None => return Err(unknown(&word, "switch of a contact model", switches()).into()),
             }
         }
+        self.early_walls(&given.model)?;
         self.written = None;
         self.pair = Some((cmd.clone(), given));
         let mut line = Line::new(cmd, "pair_style");
@@ -161,7 +162,10 @@ impl Translator {
             }
             Tangential::NoHistory => {
                 let mu = self.of("coefficientFriction", &given.reader, i, j)?;
-                line.put(&format!("tangential linear_nohistory {damping}"), at).word(&mu);
+                // Without a spring the word chooses the arms R - d/2 and the limit mu |F_n| (measured).
+                line.put(&format!("tangential linear_nohistory {damping}"), at)
+                    .word(&mu)
+                    .put("slip spring", at);
             }
         }
         Ok(())

@@ -4,24 +4,28 @@ use crate::Translator;
 use crate::model::{Rolling, Tangential};
 use crate::native::{Line, instead};
 use crate::reading::unknown;
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command};
+
+/// A keyword, its columns of pairs and of walls, whether they are there without keywords.
+type Column = (&'static str, &'static str, &'static str, bool);
 
 /// Keywords of `compute pair/gran/local` with the columns of `compute pair/local`, in the order in which LIGGGHTS writes them whatever the order of the
 /// keywords (measured: delta behind contactArea), and whether they are there without keywords.
-const COLUMNS: &[(&str, &str, bool)] = &[
-    ("pos", "x1 y1 z1 x2 y2 z2", true),
-    ("vel", "vx1 vy1 vz1 vx2 vy2 vz2", true),
-    ("id", "id1 id2 crosses", true),
-    ("force", "forcex forcey forcez", true),
-    ("force_normal", "fx fy fz", false),
-    ("force_tangential", "p1 p2 p3", false),
-    ("torque", "torquex torquey torquez", true),
-    ("history", "", true),
-    ("contactArea", "area", true),
-    ("delta", "delta", false),
-    ("heatFlux", "p13", false),
-    ("contactPoint", "cx cy cz", false),
+/// Then those of `compute wall/local`: the mesh and the triangle from 0, foot and centre (measured); the contact point is the foot, which LIGGGHTS leaves 0.
+const COLUMNS: &[Column] = &[
+    ("pos", "x1 y1 z1 x2 y2 z2", "x1 y1 z1 x2 y2 z2", true),
+    ("vel", "vx1 vy1 vz1 vx2 vy2 vz2", "vx1 vy1 vz1 vx2 vy2 vz2", true),
+    ("id", "id1 id2 crosses", "surface triangle id", true),
+    ("force", "forcex forcey forcez", "forcex forcey forcez", true),
+    ("force_normal", "fx fy fz", "fx fy fz", false),
+    ("force_tangential", "p1 p2 p3", "tx ty tz", false),
+    ("torque", "torquex torquey torquez", "torquex torquey torquez", true),
+    ("history", "", "", true),
+    ("contactArea", "area", "area", true),
+    ("delta", "delta", "delta", false),
+    ("heatFlux", "p13", "heat", false),
+    ("contactPoint", "cx cy cz", "x1 y1 z1", false),
 ];
 
 /// Keywords of `compute stress/atom` of LAMMPS ten years ago, where no temperature stood before them.
@@ -30,13 +34,42 @@ const STRESSES: &[&str] = &["ke", "pair", "bond", "angle", "dihedral", "improper
 impl Translator {
     /// `compute ID group pair/gran/local [keywords]`.
     pub(crate) fn contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        let mut line = Line::styled(cmd, "pair/local");
+        self.columns(&mut line, cmd, args, |(_, pair, _, _)| pair)?;
+        line.put("cutoff radius", cmd.span);
+        Ok(Some(vec![line.done()]))
+    }
+
+    /// `compute ID group wall/gran/local [keywords]`: of the wall on surfaces, which stands above.
+    pub(crate) fn wall_contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        let Some(wall) = &self.mesh_wall else {
+            let text = "`wall/gran/local` needs a `fix wall/gran … mesh` above it";
+            let d = Diagnostic::error(Code::INCOMPLETE, cmd.args[2].span, text);
+            return Err(d
+                .help("contacts with planes and cylinders: `store_force yes` behind that wall")
+                .into());
+        };
+        let mut line = Line::styled(cmd, "wall/local");
+        line.word(&instead(&cmd.args[2], wall.text.as_str()));
+        self.columns(&mut line, cmd, args, |(_, _, wall, _)| wall)?;
+        Ok(Some(vec![line.done()]))
+    }
+
+    /// The columns of a table of contacts.
+    fn columns(
+        &self,
+        line: &mut Line,
+        cmd: &Command,
+        args: &mut Args,
+        of: fn(&Column) -> &'static str,
+    ) -> Result<()> {
         let asked = args.rest().to_vec();
         let known: Vec<&str> = COLUMNS.iter().map(|(word, ..)| *word).collect();
         if let Some(word) = asked.iter().find(|word| !known.contains(&word.text.as_str())) {
-            return Err(unknown(word, "keyword of compute pair/gran/local", &known).into());
+            return Err(unknown(word, &format!("keyword of compute {}", cmd.args[2].text), &known).into());
         }
-        let mut line = Line::styled(cmd, "pair/local");
-        for (word, columns, usual) in COLUMNS {
+        for column in COLUMNS {
+            let (word, .., usual) = column;
             let given = asked.iter().find(|a| a.text == *word);
             if given.is_none() && !(asked.is_empty() && *usual) {
                 continue;
@@ -49,12 +82,11 @@ impl Translator {
                     }
                 }
                 _ => {
-                    line.put(columns, at);
+                    line.put(of(column), at);
                 }
             }
         }
-        line.put("cutoff radius", cmd.span);
-        Ok(Some(vec![line.done()]))
+        Ok(())
     }
 
     /// How many numbers a contact remembers: the tangential spring, the torque of a rolling spring.
@@ -71,7 +103,12 @@ impl Translator {
 
 /// `compute ID group erotate`: of spheres.
 pub(crate) fn rotation(cmd: &Command) -> Vec<Command> {
-    let mut line = Line::styled(cmd, "erotate/sphere");
+    renamed(cmd, "erotate/sphere")
+}
+
+/// A compute with the same words that has another name here.
+pub(crate) fn renamed(cmd: &Command, style: &str) -> Vec<Command> {
+    let mut line = Line::styled(cmd, style);
     line.words(cmd.args.get(3..).unwrap_or_default());
     vec![line.done()]
 }

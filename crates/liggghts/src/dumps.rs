@@ -65,6 +65,13 @@ impl Translator {
         Ok(Some(vec![line.done()]))
     }
 
+    /// A fix without effect here.
+    pub(crate) fn idle_fix(&mut self, cmd: &Command) -> Result<Vec<Command>> {
+        self.idle(&cmd.args[2], "`fix_modify` and `comm_style` of ranks have their own words");
+        self.own.insert(cmd.args[0].text.clone());
+        Ok(vec![])
+    }
+
     /// A dump of what does not exist here.
     pub(crate) fn idle_dump(&mut self, cmd: &Command) -> Result<Vec<Command>> {
         self.idle(&cmd.args[2], "the box is not divided among processes");

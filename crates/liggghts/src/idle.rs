@@ -63,10 +63,16 @@ impl Translator {
     /// `unfix` of what is only in the dialect leaves no line.
     pub(crate) fn unfix(&mut self, cmd: &Command) -> Option<Vec<Command>> {
         let id = &cmd.args.first()?.text;
+        if self.bins.remove(id) {
+            let mut compute = Line::new(cmd, "uncompute");
+            compute.word(&instead(&cmd.args[0], format!("{id}_bins")));
+            return Some(vec![cmd.clone(), compute.done()]);
+        }
         self.surfaces.remove(id);
         if self.heat.as_ref().is_some_and(|heat| heat.id() == id) {
             (self.heat, self.written) = (None, None);
         }
+        self.mesh_wall.take_if(|wall| wall.text == *id);
         if !self.own.remove(id) {
             return None;
         }

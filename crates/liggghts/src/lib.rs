@@ -5,13 +5,16 @@
 //!
 //! Source: the manual of LIGGGHTS-PUBLIC 3.8.0; what it leaves open was measured with that program.
 
+mod averages;
 mod clumps;
 mod coefficients;
 mod computes;
 mod contacts;
 mod dumps;
+mod finding;
 mod heat;
 mod idle;
+mod ids;
 mod insertion;
 mod lammps;
 mod meshes;
@@ -31,13 +34,14 @@ mod tests;
 #[cfg(test)]
 mod tests_shapes;
 
-use perigrain_base::diag::{Diagnostics, Result};
-use perigrain_lang::{Args, Command};
+use finding::{find, style_at};
+use perigrain_base::diag::{Diagnostics, Result, Span};
+use perigrain_lang::{Args, Command, Word};
 use std::collections::{BTreeMap, BTreeSet};
-use words::{Take, find, style_at};
+use words::Take;
 
+pub use finding::known;
 pub use rewrite::{Rewritten, Target, rewrite};
-pub use words::known;
 
 /// What became of a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +56,8 @@ pub enum Outcome {
 #[derive(Clone, Debug, Default)]
 pub struct Translator {
     properties: BTreeMap<String, properties::Property>,
+    /// Names of properties whose lines were refused.
+    refused: BTreeSet<String>,
     /// Counts changes of properties.
     version: u64,
     /// The number of atom types, where `create_box` gave it.
@@ -72,8 +78,18 @@ pub struct Translator {
     shown: BTreeSet<String>,
     /// The deck wants another program: what follows is not looked at.
     ended: bool,
+    /// Models of walls above `pair_style`.
+    early: Vec<model::Given>,
+    /// The wall on surfaces, of which LIGGGHTS has one.
+    mesh_wall: Option<Word>,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
+    /// IDs of fixes whose bins are a compute of their own here.
+    bins: BTreeSet<String>,
+    /// Templates and distributions that no line has used yet.
+    unused: BTreeMap<String, Span>,
+    /// The styles of all fixes by their IDs.
+    fixes: BTreeMap<String, String>,
     /// Words whose lack of effect has been noted.
     idle: BTreeSet<String>,
     /// The deck has chosen what becomes of grains that are lost.
@@ -140,6 +156,7 @@ impl Translator {
             }
             _ => vec![],
         };
+        self.one_style(cmd)?;
         let lines = match find(cmd) {
             None => None,
             Some(entry) => match entry.take {

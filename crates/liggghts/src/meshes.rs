@@ -165,6 +165,9 @@ impl Translator {
         let Some(kind) = kind else { return lacks("type T") };
         let mut line = Line::styled(cmd, "surface");
         line.word(&file).put("type", kind.span).word(&kind).words(&first).words(&then);
+        if cmd.args[2].text == "mesh/surface/planar" {
+            line.put("planar", cmd.args[2].span);
+        }
         if let Some(word) = &wear {
             line.put("wear finnie", word.span).words(&self.wear(word, &kind)?);
         }
@@ -205,17 +208,28 @@ impl Translator {
         self.named_mesh(args)
     }
 
-    /// `fix ID group massflow/mesh mesh MESH …`: the native words are the same, but for files of grains and the screen.
+    /// `fix ID group massflow/mesh mesh MESH …`: the native words are the same, but for the screen, and `writeTime` without a file.
     pub(crate) fn mass_flow(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
         let lines = self.named_mesh(args)?;
-        if let Some(word) = args.rest().iter().find(|word| ["file", "append"].contains(&word.text.as_str())) {
-            let help = "`fix print` or `fix ave/time` with f_ID[1] and f_ID[2], the mass and number that have passed";
-            return Err(without_counterpart(word, "a file of the grains that pass", help).into());
+        args.rest();
+        let has = |name: &str| cmd.args.iter().any(|word| word.text == name);
+        let idle_time = has("writeTime") && !has("file") && !has("append");
+        if !has("screen") && !idle_time {
+            return Ok(lines);
         }
-        let Some(at) = cmd.args.iter().position(|word| word.text == "screen") else { return Ok(lines) };
-        // Nothing is written to the screen but rows of the step table.
         let mut line = Line::new(cmd, &cmd.name.text);
-        line.words(&cmd.args[..at]).words(cmd.args.get(at + 2..).unwrap_or_default());
+        let mut words = cmd.args.iter();
+        while let Some(word) = words.next() {
+            match word.text.as_str() {
+                // LIGGGHTS prints nothing about grains that pass either (measured).
+                "screen" => {
+                    words.next();
+                    self.idle(word, "grains that pass are no lines of the log");
+                }
+                "writeTime" if idle_time => self.idle(word, "there is no file of the grains that pass"),
+                _ => drop(line.word(word)),
+            }
+        }
         Ok(Some(vec![line.done()]))
     }
 

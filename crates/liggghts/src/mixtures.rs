@@ -1,8 +1,8 @@
 //! Templates of grains and their distributions: native mixtures.
 
 use crate::Translator;
-use crate::native::Line;
-use crate::reading::{choice, number, rounded, twice, unknown, value, without_counterpart};
+use crate::native::{Line, instead};
+use crate::reading::{choice, is_open, number, rounded, twice, unknown, value, without_counterpart};
 use perigrain_base::diag::{Code, Diagnostic, Result, nearest};
 use perigrain_lang::{Args, Command, Word};
 
@@ -21,7 +21,7 @@ const STYLES: &[&str] = &["constant", "uniform", "gaussian", "lognormal"];
 
 impl Translator {
     /// `fix ID group particletemplate/sphere SEED …`.
-    pub(crate) fn template(&mut self, cmd: &Command, args: &mut Args) -> Result<()> {
+    pub(crate) fn template(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
         seed(args)?;
         let at = cmd.args[2].span;
         let one = |text: &str| Word::new(text, at);
@@ -49,9 +49,18 @@ impl Translator {
         }
         self.in_all(cmd);
         let id = cmd.args[0].text.clone();
+        let mut lines = vec![];
+        if is_open(&template.radius) {
+            // The text of the radius under a name, so that twice that number has the deck's digits.
+            let name = format!("{id}_radius");
+            let mut line = Line::new(cmd, "variable");
+            line.put(&format!("{name} string"), at).word(&template.radius);
+            lines.push(line.done());
+            template.radius = instead(&template.radius, format!("${{{name}}}"));
+        }
         self.own.insert(id.clone());
         self.templates.insert(id, template);
-        Ok(())
+        Ok(Some(lines))
     }
 
     /// `fix ID group particledistribution/discrete SEED n ID w …`, with shares by mass or by number.

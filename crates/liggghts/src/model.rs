@@ -101,6 +101,8 @@ const REFUSED: &[(&str, &str, &str)] = &[
     ("jkr", "a law of a fork of LIGGGHTS", "write native lines: `pair_coeff * * jkr E nu gamma …`"),
     ("hertz/break", "a law of a fork of LIGGGHTS", "bonds that break: `bond_style bpm/beam`"),
     ("luding", "a law of a fork of LIGGGHTS", "`model hooke/hysteresis` is the nearest one"),
+    ("tan_luding", "a law of a fork of LIGGGHTS", "`tangential history` beside `model hooke/hysteresis`"),
+    ("vdw", "a law of a fork of LIGGGHTS", "native lines: `pair_coeff * * … cohesion …`, or `dmt`"),
     ("edinburgh", "a law of a fork of LIGGGHTS", "`model hooke/hysteresis` is the nearest one"),
     ("thorn_ning", "a law of a fork of LIGGGHTS", "native lines: `pair_coeff * * mdr …`"),
     ("bond", "a law of a fork of LIGGGHTS", "`bond_style bpm/beam` joins grains"),
@@ -133,6 +135,12 @@ const SWITCHES: &[&str] = &[
 /// The heads of a model's parts, in the order of LIGGGHTS.
 pub(crate) const PARTS: [&str; 5] = ["model", "tangential", "cohesion", "rolling_friction", "surface"];
 
+/// Parts of models of forks.
+const OTHER_PARTS: &[(&str, &str, &str)] = &[
+    ("viscous", "a damping by viscosity of a fluid", "`model hertz` with coefficientRestitution"),
+    ("heat_transfer", "a part of a model of a fork of LIGGGHTS", "`fix heat/gran`"),
+];
+
 impl Model {
     /// Whether its constants are those of springs and not of materials.
     pub fn is_stiffness(&self) -> bool {
@@ -151,7 +159,9 @@ fn of<T: Copy>(args: &mut Args, what: &str, table: &[(&str, T)]) -> Result<T> {
     if let Some((_, value)) = table.iter().find(|(name, _)| *name == word.text) {
         return Ok(*value);
     }
-    if let Some((_, what, help)) = REFUSED.iter().find(|(name, _, _)| *name == word.text) {
+    let tail = word.text.rsplit('/').next().unwrap_or("");
+    let listed = |text: &str| REFUSED.iter().find(|(name, _, _)| *name == text);
+    if let Some((_, what, help)) = listed(&word.text).or_else(|| listed(tail)) {
         return Err(without_counterpart(word, what, help).into());
     }
     let known: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
@@ -172,6 +182,9 @@ pub(crate) fn parts(args: &mut Args, reader: &Word) -> Result<Given> {
     };
     let mut next = 0;
     while let Some(head) = args.peek().cloned() {
+        if let Some((_, what, help)) = OTHER_PARTS.iter().find(|(name, _, _)| *name == head.text) {
+            return Err(without_counterpart(&head, what, help).into());
+        }
         let Some(k) = PARTS.iter().position(|part| *part == head.text) else { break };
         if k < next {
             let text = format!("`{}` stands too late", head.text);

@@ -55,6 +55,11 @@ pub(crate) const PROPERTIES: &[(&str, Shape)] = &[
     ("youngsModulusOriginal", Shape::Types),
 ];
 
+/// Whether models read a property of this name.
+pub(crate) fn is_known(name: &str) -> bool {
+    PROPERTIES.iter().any(|(known, _)| *known == name)
+}
+
 /// One property of the deck.
 #[derive(Clone, Debug)]
 pub(crate) struct Property {
@@ -72,6 +77,16 @@ pub(crate) struct Property {
 impl Translator {
     /// `fix ID group property/global NAME scalar|vector|peratomtype|matrix|peratomtypepair …`.
     pub(crate) fn property(&mut self, cmd: &Command, args: &mut Args) -> Result<()> {
+        let name = args.peek_text().to_string();
+        let read = self.new_property(cmd, args);
+        // What a refused line would have defined is not missed again.
+        if read.is_err() {
+            self.refused.insert(name);
+        }
+        read
+    }
+
+    fn new_property(&mut self, cmd: &Command, args: &mut Args) -> Result<()> {
         let name = args.expect("the name of a property")?.clone();
         let known =
             ["scalar", "vector", "peratomtype", "atomtype", "matrix", "peratomtypepair", "atomtypepair"];
@@ -110,6 +125,11 @@ impl Translator {
             symmetric(&name, &values, types)?;
         }
         let id = cmd.args[0].text.clone();
+        if let Some(other) = self.properties.get(&name.text).filter(|p| p.id != id) {
+            let text = format!("fix `{}` defines property `{}` already", other.id, name.text);
+            let d = Diagnostic::error(Code::DUPLICATE_NAME, name.span, text).label(other.span, "here");
+            return Err(d.help(format!("write `fix {} …`, which replaces its values", other.id)).into());
+        }
         self.properties.retain(|_, p| p.id != id);
         let property = Property { id: id.clone(), shape, types, values, span: name.span, read: false };
         self.properties.insert(name.text.clone(), property);
@@ -125,6 +145,9 @@ impl Translator {
     pub(crate) fn of(&mut self, name: &str, reader: &Word, i: usize, j: usize) -> Result<Word> {
         let types = self.types();
         let Some(property) = self.properties.get_mut(name) else {
+            if self.refused.contains(name) {
+                return Ok(Word::new("1", reader.span));
+            }
             return Err(missing(name, reader, types.max(1)));
         };
         property.read = true;

@@ -43,8 +43,13 @@ pub(crate) fn value(word: &Word) -> Option<f64> {
     if is_open(word) { None } else { word.text.parse().ok() }
 }
 
-/// What a formula of the deck has inside, to stand in a larger one.
+/// What a formula or a variable of the deck is in a larger formula.
 pub(crate) fn inside(word: &Word) -> String {
+    let name = word.text.strip_prefix("${").and_then(|rest| rest.strip_suffix('}'));
+    let letter = word.text.strip_prefix('$').filter(|rest| rest.len() == 1);
+    if let Some(name) = name.or(letter).filter(|name| !name.contains('$')) {
+        return format!("v_{name}");
+    }
     match word.text.strip_prefix("$(").and_then(|rest| rest.strip_suffix(')')) {
         Some(formula) => format!("({formula})"),
         None => word.text.clone(),

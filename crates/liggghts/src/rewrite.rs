@@ -33,6 +33,7 @@ pub fn rewrite(text: &str, file: FileId, target: Target) -> Rewritten {
     let mut translator = None;
     let mut settled = false;
     let mut at = 0;
+    let mut other = Other::default();
     for raw in raw_lines(text, file) {
         let (start, end) = (raw.span.start as usize, raw.span.end as usize);
         out.text += &text[at.min(start)..start];
@@ -60,14 +61,70 @@ pub fn rewrite(text: &str, file: FileId, target: Target) -> Rewritten {
             continue;
         };
         match lines(translator, &cmd) {
-            Ok(Outcome::NotMine) => out.text += whole,
-            Ok(Outcome::Native(lines)) => put(&mut out, &lines, &cmd, whole, target),
+            Ok(Outcome::NotMine) if target == Target::Perigrain => out.text += whole,
+            Ok(Outcome::NotMine) => other.same(&mut out, &cmd, whole),
+            Ok(Outcome::Native(lines)) => put(&mut out, &lines, &cmd, whole, target, &mut other),
             Err(problems) => out.problems.append(problems.at(cmd.span)),
         }
         out.problems.append(translator.take_notes());
     }
     out.text += &text[at.min(text.len())..];
+    other.settle(&mut out);
     out
+}
+
+/// What is known of a deck for LAMMPS while it grows.
+#[derive(Default)]
+struct Other {
+    seen: lammps::Seen,
+    /// Walls that wait for the laws below them, by their marks in the text.
+    walls: Vec<Command>,
+}
+
+impl Other {
+    /// The mark of a wall that waits.
+    fn mark(k: usize) -> String {
+        format!("\u{1}{k}\u{1}")
+    }
+
+    /// A native line.
+    fn line(&mut self, out: &mut Rewritten, line: &Command) -> String {
+        if lammps::waits(line) {
+            self.walls.push(line.clone());
+            return Self::mark(self.walls.len() - 1);
+        }
+        let found = self.seen.line(line);
+        self.told(out, line, found)
+    }
+
+    /// The text of a line, or why there is none.
+    fn told(&self, out: &mut Rewritten, line: &Command, found: Result<String, &str>) -> String {
+        found.unwrap_or_else(|why| {
+            out.lost += 1;
+            format!("# NOT IN LAMMPS: {} ({why})", line.text)
+        })
+    }
+
+    /// A line that is the same in both, or has no counterpart.
+    fn same(&mut self, out: &mut Rewritten, cmd: &Command, whole: &str) {
+        let text = self.line(out, cmd);
+        if text == cmd.text {
+            out.text += whole;
+            return;
+        }
+        out.text += &text;
+        if whole.ends_with('\n') {
+            out.text.push('\n');
+        }
+    }
+
+    /// Writes the walls in the places of their marks.
+    fn settle(&self, out: &mut Rewritten) {
+        for (k, wall) in self.walls.iter().enumerate() {
+            let text = self.told(out, wall, self.seen.wall(wall));
+            out.text = out.text.replacen(&Self::mark(k), &text, 1);
+        }
+    }
 }
 
 /// The command of a line.
@@ -110,7 +167,14 @@ fn lines(translator: &mut Translator, cmd: &Command) -> Result<Outcome, Diagnost
 }
 
 /// Writes the native lines below the line that they come from.
-fn put(out: &mut Rewritten, lines: &[Command], cmd: &Command, whole: &str, target: Target) {
+fn put(
+    out: &mut Rewritten,
+    lines: &[Command],
+    cmd: &Command,
+    whole: &str,
+    target: Target,
+    other: &mut Other,
+) {
     let stays = lines.last() == Some(cmd);
     let made = &lines[..lines.len() - usize::from(stays)];
     if !stays {
@@ -123,16 +187,15 @@ fn put(out: &mut Rewritten, lines: &[Command], cmd: &Command, whole: &str, targe
     for line in made {
         match target {
             Target::Perigrain => out.text += &format!("{}\n", line.text),
-            Target::Lammps => match lammps::line(line) {
-                Ok(text) => out.text += &format!("{text}\n"),
-                Err(why) => {
-                    out.lost += 1;
-                    out.text += &format!("# NOT IN LAMMPS: {} ({why})\n", line.text);
-                }
-            },
+            Target::Lammps => {
+                let text = other.line(out, line);
+                out.text += &format!("{text}\n");
+            }
         }
     }
-    if stays {
-        out.text += whole;
+    match (stays, target) {
+        (false, _) => {}
+        (true, Target::Perigrain) => out.text += whole,
+        (true, Target::Lammps) => other.same(out, cmd, whole),
     }
 }

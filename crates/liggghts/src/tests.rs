@@ -1,6 +1,7 @@
 //! Tests of lines as text: what each becomes, and what is refused.
 
 mod heat;
+mod more;
 
 use super::*;
 use perigrain_base::diag::{Code, Diagnostics, FileId};
@@ -92,7 +93,7 @@ fn models_become_laws_of_pairs() {
         // The default of `tangential` is off, that of `model` hertz.
         ("model hertz", "", format!("{hertz} tangential none")),
         ("tangential history", "", history.clone()),
-        ("model hertz tangential no_history", "", format!("{hertz} tangential linear_nohistory NULL 0.5")),
+        ("model hertz tangential no_history", "", format!("{hertz} tangential linear_nohistory NULL 0.5 slip spring")),
         (
             "model hertz tangential history tangential_damping off",
             "",
@@ -208,6 +209,18 @@ fn walls_lean_on_the_law_of_the_grains() {
         let lines = behind(&format!("{pair}fix w all wall/gran {wall}\n"));
         assert_eq!(lines[1], format!("fix w all {wanted}"));
     }
+    // A wall may leave out the spring of friction, or what limits the dashpot.
+    let softer = behind(
+        "pair_style gran model hertz tangential history limitForce on\n\
+         fix w all wall/gran model hertz tangential no_history primitive type 1 zplane 0.\n\
+         fix v all wall/gran model hertz tangential history primitive type 1 zplane 0. limitForce on\n",
+    );
+    assert_eq!(softer[1], "fix w all wall/gran coeff 1 only normal damping no_history zplane 0. NULL");
+    assert_eq!(softer[2], "fix v all wall/gran coeff 1 zplane 0. NULL");
+    let d = wrong(
+        "fix w all wall/gran model hertz tangential history primitive type 1 zplane 0.\npair_style gran model hertz\n",
+    );
+    assert_eq!((d.0[0].code, d.0.len()), (Code::NO_COUNTERPART, 1), "{d}");
     // Above `pair_style` the parts of a wall are all that is known.
     let early = behind("fix w all wall/gran model hertz tangential history primitive type 1 zplane 0.\n");
     assert_eq!(early, ["fix w all wall/gran coeff 1 only normal damping tangential zplane 0. NULL"]);
@@ -270,8 +283,11 @@ fn insertions_keep_their_amounts() {
         ),
     ] {
         let lines = behind(&format!("{head}fix i all {line}\n"));
-        assert_eq!(lines[0], "mixture d number 5 sphere 1 $(2*${r}) 2500 1.0");
-        assert_eq!(lines[2], format!("fix i all {wanted}"));
+        assert_eq!(
+            lines[..2],
+            ["variable p_radius string ${r}", "mixture d number 5 sphere 1 $(2*v_p_radius) 2500 1.0"]
+        );
+        assert_eq!(lines[3], format!("fix i all {wanted}"));
     }
 }
 
@@ -371,17 +387,6 @@ run 1
     assert!((young / (4.0 * (2.0 - nu) * (1.0 + nu)) / shear_star - 1.0).abs() < 1e-12);
     // x_gamma = 2 sqrt(G*/E*).
     assert!((number(11) / (2.0 * (shear_star / young_star).sqrt()) - 1.0).abs() < 1e-12, "{line}");
-}
-
-#[test]
-fn mass_flow_writes_no_file_and_nothing_to_the_screen() {
-    let mesh = "fix m all mesh/surface file m.stl type 1\n";
-    let lines =
-        behind(&format!("{mesh}fix f all massflow/mesh mesh m vec_side 0 0 1 screen yes count once\n"));
-    assert_eq!(lines.last().unwrap(), "fix f all massflow/mesh mesh m vec_side 0 0 1 count once");
-    let d = wrong(&format!("{mesh}fix f all massflow/mesh mesh m vec_side 0 0 1 file f.txt writeTime\n"))
-        .to_string();
-    assert!(d.contains("a file of the grains that pass"), "{d}");
 }
 
 /// Columns stand in LIGGGHTS' order, whatever that of the keywords; the manual's words of 2014 get what LAMMPS added since.

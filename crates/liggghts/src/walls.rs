@@ -7,7 +7,8 @@ use crate::reading::{choice, number, rounded, unknown};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command, Word, blame};
 
-const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinder", "ycylinder", "zcylinder"];
+/// The places of walls without a file.
+pub(crate) const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinder", "ycylinder", "zcylinder"];
 const KEYWORDS: &[&str] =
     &["primitive", "mesh", "shear", "temperature", "store_force", "store_force_contact"];
 
@@ -52,6 +53,9 @@ impl Translator {
             place.warm |= word.text == "temperature";
             more.extend(self.more(&word, args)?);
         }
+        if place.on_mesh {
+            self.mesh_wall = Some(cmd.args[0].clone());
+        }
         let style = if place.on_mesh { "wall/mesh" } else { "wall/gran" };
         let mut line = Line::styled(cmd, style);
         self.law_of_wall(&mut line, &given, &place)?;
@@ -95,12 +99,12 @@ impl Translator {
             kinds.push(surface.kind.clone());
             words.push(word);
         }
-        if let Some(k) = kinds.iter().position(|kind| kind.text != kinds[0].text) {
-            let text = format!("surface `{}` has another type than `{}`", words[k + 1].text, words[1].text);
-            let d = Diagnostic::error(Code::NO_COUNTERPART, words[k + 1].span, text);
-            return Err(d.help("write one `fix wall/gran` for the surfaces of each type").into());
+        let mut kind = kinds.swap_remove(0);
+        if kinds.iter().any(|other| other.text != kind.text) {
+            // Each surface has its own.
+            kind = Word::new("NULL", head);
         }
-        Ok(Place { kind: kinds.swap_remove(0), words, on_mesh: true, warm })
+        Ok(Place { kind, words, on_mesh: true, warm })
     }
 
     /// What may follow the place of a wall.
@@ -145,6 +149,9 @@ impl Translator {
     fn law_of_wall(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let at = given.normal;
         let of_pair = self.pair.as_ref().map(|(_, pair)| pair.model.clone());
+        if of_pair.is_none() {
+            self.early.push(given.clone());
+        }
         let narrower = of_pair.as_ref().is_none_or(|pair| fits(&given.model, pair));
         if !narrower {
             return self.own_law(line, given, place);
@@ -153,8 +160,10 @@ impl Translator {
         if of_pair.as_ref() != Some(&given.model) {
             line.put("only normal damping", at);
             let model = &given.model;
+            line.put(if model.limit { "limit" } else { "" }, at);
             for (has, name, at) in [
-                (model.tangential != Tangential::Off, "tangential", given.tangential),
+                (model.tangential == Tangential::History, "tangential", given.tangential),
+                (model.tangential == Tangential::NoHistory, "no_history", given.tangential),
                 (model.rolling != Rolling::Off, "rolling", given.rolling),
                 (model.cohesion != Cohesion::Off, "cohesion", given.cohesion),
                 (place.warm, "heat", at),
@@ -163,6 +172,16 @@ impl Translator {
             }
         }
         Ok(())
+    }
+
+    /// Walls above the `pair_style` line, whose models must be that of the grains or leave parts of it out.
+    pub(crate) fn early_walls(&mut self, pair: &Model) -> Result<()> {
+        let Some(wall) = std::mem::take(&mut self.early).into_iter().find(|w| !fits(&w.model, pair)) else {
+            return Ok(());
+        };
+        let text = "the model of this wall has what the model of `pair_style`, below it, does not have";
+        let d = blame(&wall.reader, Code::NO_COUNTERPART, text);
+        Err(d.help("write `pair_style` and `pair_coeff` above the walls").into())
     }
 
     /// A wall with a law of its own, in a deck of one atom type.
@@ -182,20 +201,22 @@ impl Translator {
             return Err(d.help("write `fix heat/gran` first").into());
         }
         line.put("granular", given.normal);
-        self.law(line, given, (0, 0), place.warm)
+        self.law(line, given, (0, 0), place.warm)?;
+        line.put("arms middle", given.normal);
+        Ok(())
     }
 }
 
 /// Whether a wall's model is that of the grains, or leaves parts of it out.
 fn fits(wall: &Model, pair: &Model) -> bool {
     let tangential = wall.tangential == Tangential::Off
-        || (wall.tangential == pair.tangential
+        || ((wall.tangential == pair.tangential || pair.tangential == Tangential::History)
             && wall.undamped == pair.undamped
             && wall.softer == pair.softer);
     let rolling =
         wall.rolling == Rolling::Off || (wall.rolling == pair.rolling && wall.torsion == pair.torsion);
     let cohesion =
         wall.cohesion == Cohesion::Off || (wall.cohesion == pair.cohesion && wall.reduce == pair.reduce);
-    let normal = wall.normal == pair.normal && wall.limit == pair.limit && wall.absolute == pair.absolute;
+    let normal = wall.normal == pair.normal && wall.limit <= pair.limit && wall.absolute == pair.absolute;
     normal && tangential && rolling && cohesion
 }

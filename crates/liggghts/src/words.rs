@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, clumps, computes, contacts, dumps, idle, old, regions};
+use crate::{Translator, averages, clumps, computes, contacts, dumps, idle, old, regions};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -23,7 +23,7 @@ pub(crate) enum Take {
 /// A word of LIGGGHTS.
 pub(crate) struct Entry {
     pub command: &'static str,
-    /// The style, with `*` at its end for all that begin so; empty for a command.
+    /// The style, with `*` for all that begin or end so; empty for a command.
     pub style: &'static str,
     /// Only LIGGGHTS has it: a deck that has it is a deck of LIGGGHTS.
     pub mark: bool,
@@ -62,6 +62,12 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Refused("a factor on the size of grains", "write larger diameters into the templates"),
     ),
+    entry(
+        "partitioner_style",
+        "",
+        false,
+        Take::Idle("the box is divided among processes by how many grains there are"),
+    ),
     entry("neigh_modify", "", false, Take::Lines(idle::neigh_modify)),
     entry("pair_style", "gran", true, Take::Lines(|t, cmd, _| t.pair_line(cmd))),
     entry("pair_style", "sph*", false, Take::Refused("a fluid of particles", FLUID)),
@@ -73,12 +79,7 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Lines(|t, cmd, args| t.property(cmd, args).map(|()| Some(vec![]))),
     ),
     entry("fix", "property/atom", false, Take::Lines(|t, cmd, args| t.atom_property(cmd, args))),
-    entry(
-        "fix",
-        "particletemplate/sphere",
-        true,
-        Take::Lines(|t, cmd, args| t.template(cmd, args).map(|()| Some(vec![]))),
-    ),
+    entry("fix", "particletemplate/sphere", true, Take::Lines(|t, cmd, args| t.template(cmd, args))),
     entry(
         "fix",
         "particletemplate/multisphere",
@@ -204,15 +205,128 @@ pub(crate) const TABLE: &[Entry] = &[
     entry("compute", "ke/multisphere", false, Take::Lines(|t, cmd, _| t.energy(cmd, "ke/rigid").map(Some))),
     entry("compute", "multisphere", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
     entry("compute", "rigid", false, Take::Lines(|t, cmd, args| t.body_property(cmd, args).map(Some))),
+    entry(
+        "fix",
+        "mesh/surface/*",
+        false,
+        Take::Refused(
+            "a surface of another kind",
+            "`mesh/surface/stress` feels the grains, `mesh/surface/stress/servo` presses on them",
+        ),
+    ),
+    entry(
+        "fix",
+        "buoyancy",
+        false,
+        Take::Refused(
+            "the lift of a fluid",
+            "`fix addforce` with an atom-style variable, as `mass*9.81*1000/2500`",
+        ),
+    ),
+    entry(
+        "fix",
+        "check/timestep/*",
+        false,
+        Take::Refused("a check of the time step of other particles", "`check/timestep/gran`"),
+    ),
+    entry("fix", "lb/*", false, Take::Refused("a coupling to another program", PARTNER)),
+    entry(
+        "fix",
+        "remove",
+        false,
+        Take::Refused(
+            "grains that are taken away at a rate",
+            "`delete_atoms`, or `massflow/mesh … count once delete_atoms yes`",
+        ),
+    ),
+    entry(
+        "fix",
+        "efield/gran",
+        false,
+        Take::Refused("an electric field on grains", "`fix efield` acts on charges"),
+    ),
+    entry(
+        "fix",
+        "continuum/weighted",
+        false,
+        Take::Refused("averages over a field", "`compute continuum/chunk`"),
+    ),
+    entry(
+        "fix",
+        "particledistribution/*",
+        false,
+        Take::Refused("a distribution of another kind", "`particledistribution/discrete`"),
+    ),
+    entry(
+        "fix",
+        "template/multi*",
+        false,
+        Take::Refused(
+            "a template of several spheres",
+            "`molecule` with `fix rigid/small`, and `fix pour … mol`",
+        ),
+    ),
+    entry(
+        "fix",
+        "breakparticle/*",
+        false,
+        Take::Refused("grains that break", "`bond_style bpm/beam` joins small grains to ones that break"),
+    ),
+    entry(
+        "fix",
+        "break/*",
+        false,
+        Take::Refused("grains that break", "`bond_style bpm/beam` joins small grains to ones that break"),
+    ),
+    entry(
+        "fix",
+        "topology/break",
+        false,
+        Take::Refused("grains that break", "`bond_style bpm/beam` joins small grains to ones that break"),
+    ),
+    entry(
+        "fix",
+        "liquidtransfer*",
+        false,
+        Take::Refused("liquid on grains", "`cohesion capillary` of pair_coeff has bridges of a given volume"),
+    ),
+    entry(
+        "fix",
+        "scalar_transport_equation*",
+        false,
+        Take::Refused("a transport equation on grains", "`fix heat/flow` conducts heat"),
+    ),
+    entry(
+        "fix",
+        "property/atom/regional*",
+        false,
+        Take::Refused("marks of grains", "`fix property/atom d_NAME` and `set region … d_NAME`"),
+    ),
+    entry("fix", "balance", false, Take::Lines(|t, cmd, _| t.idle_fix(cmd).map(Some))),
+    entry("fix", "ave/spatial", false, Take::Lines(|t, cmd, args| t.bins(cmd, args))),
+    entry("fix", "nve/limit", false, Take::Lines(|_, cmd, args| averages::limit(cmd, args))),
+    entry(
+        "compute",
+        "nparticles/tracer/region",
+        false,
+        Take::Refused("marks of grains", "`variable n equal count(GROUP,REGION)`"),
+    ),
+    entry(
+        "compute",
+        "coord/gran",
+        false,
+        Take::Refused("neighbours of a grain", "`compute coord/atom`, or `compute contact/atom`"),
+    ),
+    entry(
+        "compute",
+        "contact/atom/gran",
+        false,
+        Take::Lines(|_, cmd, _| Ok(Some(contacts::renamed(cmd, "contact/atom")))),
+    ),
     entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
     entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
     entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
-    entry(
-        "compute",
-        "wall/gran/local",
-        false,
-        Take::Refused("a table of contacts", "`contacts` behind `fix wall/mesh`, and `dump local`"),
-    ),
+    entry("compute", "wall/gran/local", false, Take::Lines(|t, cmd, args| t.wall_contacts(cmd, args))),
     entry("dump", "custom/vtk", true, Take::Lines(|_, cmd, args| dumps::custom(cmd, args).map(Some))),
     entry("dump", "custom", false, Take::Lines(|_, cmd, _| Ok(clumps::dump(cmd)))),
     entry("dump", "mesh/stl", false, Take::Lines(|t, cmd, args| t.mesh_dump(cmd, args, "mesh/stl"))),
@@ -226,6 +340,25 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Refused("a picture of contacts", "`dump local` with `compute pair/local`"),
     ),
+    entry("dump", "image/gran", false, Take::Refused("a picture", "`dump image`")),
+    entry(
+        "dump",
+        "euler/vtk",
+        false,
+        Take::Refused("averages over cells", "`compute chunk/atom bin/3d` with `fix ave/chunk`"),
+    ),
+    entry(
+        "dump",
+        "*/vtm",
+        false,
+        Take::Refused("several kinds of data in one file", "`custom/vtk` and `mesh/vtk` write one file each"),
+    ),
+    entry(
+        "dump",
+        "atom/vtk",
+        false,
+        Take::Refused("a dump without attributes", "`custom/vtk` with the attributes"),
+    ),
     entry("dump_modify", "", false, Take::Lines(|_, cmd, _| Ok(dumps::modified(cmd)))),
     entry("region", "mesh/tet", false, Take::Lines(|t, cmd, args| t.tetrahedra(cmd, args).map(Some))),
     entry("region", "wedge", false, Take::Lines(|_, cmd, args| regions::wedge(cmd, args).map(Some))),
@@ -238,38 +371,3 @@ pub(crate) const TABLE: &[Entry] = &[
     entry("pair_coeff", "", false, Take::Lines(|t, cmd, _| Ok(t.pair_coeff(cmd)))),
     entry("fix", "wall/mesh", false, Take::Same),
 ];
-
-/// At which word behind the command its style stands.
-pub(crate) fn style_at(command: &str) -> usize {
-    match command {
-        "fix" | "compute" | "dump" => 2,
-        "region" => 1,
-        _ => 0,
-    }
-}
-
-/// The word of LIGGGHTS that a line begins with.
-pub(crate) fn find(cmd: &Command) -> Option<&'static Entry> {
-    let command = cmd.name.text.as_str();
-    let style = cmd.args.get(style_at(command)).map_or("", |w| w.text.as_str());
-    let fits = |e: &&Entry| {
-        e.command == command
-            && match e.style.strip_suffix('*') {
-                Some(start) => style.starts_with(start),
-                None => e.style.is_empty() || e.style == style,
-            }
-    };
-    TABLE.iter().find(fits)
-}
-
-/// The styles that LIGGGHTS has of a kind and that are read here.
-pub fn known(command: &str) -> impl Iterator<Item = &'static str> {
-    let of = command.to_string();
-    let read = move |e: &&Entry| {
-        e.command == of
-            && !e.style.is_empty()
-            && !matches!(e.take, Take::Refused(..))
-            && !e.style.ends_with('*')
-    };
-    TABLE.iter().filter(read).map(|e| e.style)
-}

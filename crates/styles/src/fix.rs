@@ -1,6 +1,7 @@
 //! What a fix is: a style that reads its line, and what it declares.
 
 use super::pair::{Deck, ToCome};
+use super::probe::WallProbe;
 use super::words::{At, Words, inner};
 use super::{BuildCx, Motion, Pull, SealCx, Shape, Style};
 use dyn_clone::DynClone;
@@ -136,6 +137,14 @@ pub trait Fix: DynClone + Send {
     /// # Errors
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
+
+    /// A probe of the contacts with it, if it is a wall of surfaces. The caller's op reads `wall_contacts`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn wall_probe(&self, _cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>> {
+        Ok(None)
+    }
 
     /// Captures what it needs from the scene when it is declared (positions, the present step).
     ///

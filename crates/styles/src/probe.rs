@@ -163,6 +163,40 @@ pub trait Probe: Send {
     }
 }
 
+/// A grain on a wall of surfaces, and what the wall does to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnWall {
+    /// The number of the surface in the line of the wall, from 0.
+    pub surface: u32,
+    /// The number of the triangle in the surface's file, from 0.
+    pub triangle: u32,
+    /// The grain.
+    pub grain: u32,
+    /// The point of the wall that is nearest to its centre [length].
+    pub foot: Vec3,
+    /// Unit vector from there to the centre.
+    pub normal: Vec3,
+    /// The distance of both [length].
+    pub distance: f64,
+    /// Velocity of the wall there [length/time].
+    pub velocity: Vec3,
+    /// Force on the grain [force].
+    pub force: Vec3,
+    /// Torque on the grain about its centre [torque].
+    pub torque: Vec3,
+    /// Heat that flows into the grain [energy/time].
+    pub heat: f64,
+    /// The first numbers that the contact remembers.
+    pub history: [f64; HISTORY],
+}
+
+/// The contacts of a wall after a step, with forces at the present positions and velocities; contact history has moved on
+/// already and is only looked at.
+pub trait WallProbe: Send {
+    /// All contacts, by surface, triangle and tag; `dt`: the step [time].
+    fn look(&mut self, w: &World, dt: f64) -> Vec<OnWall>;
+}
+
 /// The interactions of several styles, pair by pair: forces and energies of a pair add up.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! What styles may request while a run is sealed into a plan.
 
 use crate::BondForce;
-use crate::probe::Probe;
+use crate::probe::{Probe, WallProbe};
 use perigrain_base::diag::{Code, Result, Span, fail};
 use perigrain_lang::{Param, ValueRef};
 use perigrain_output::log::Log;
@@ -305,6 +305,13 @@ pub trait SealCx {
     /// What is missing in the scene.
     fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
         self.probes()
+    }
+    /// Probes of walls of surfaces, with the IDs of their fixes. The caller's op reads `wall_contacts`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn wall_probes(&mut self) -> Result<Vec<(String, Box<dyn WallProbe>)>> {
+        Ok(vec![])
     }
     /// The largest cutoff of forces of the pair style in force [length].
     fn cutoff(&mut self) -> Option<f64> {

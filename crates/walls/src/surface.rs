@@ -1,12 +1,13 @@
 //! fix surface: a mesh in its place, without a force of its own; walls lean on it, movers and a servo move it.
 
+mod flat;
 mod op;
 
 use crate::shared::direction;
 use crate::shared::forget;
 use crate::wall::servo::{self, Controlled, Servo};
 use crate::{Fix, FixStyle};
-use perigrain_base::diag::{Code, Diagnostic, Result, fail, nearest};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail, nearest};
 use perigrain_base::math::body::{turn, turned};
 use perigrain_base::math::vec3::{Vec3, cross, sub};
 use perigrain_lang::{Args, Param, Word};
@@ -69,6 +70,9 @@ struct Line {
     /// The type whose coefficients the contacts of `wall/mesh coeff T` have.
     #[word(keyword = "type", name = "T", what = "the type of the surface", shown = "required")]
     kind: Option<OneType>,
+    /// All triangles must lie in one plane.
+    #[word(flag, placed)]
+    planar: Option<Span>,
     #[word(flatten)]
     places: Each<Transform>,
     /// A velocity of the surface that moves nothing [length/time].
@@ -175,6 +179,9 @@ impl FixStyle for Surface {
                 line.file.text, mesh.open_edges
             );
             cx.note(Diagnostic::note(Code::SUSPICIOUS, line.file.span, text));
+        }
+        if let Some(span) = line.planar {
+            flat::check(mesh.triangles(), &line.file, span)?;
         }
         let slide = slide(line.speed, line.spin, mesh.triangles(), cx)?;
         let servo = line.servo.map(|at| at.value.servo(at.span)).transpose()?;

@@ -8,7 +8,7 @@ use perigrain_output::log::Log;
 use perigrain_pairs::bond::BondForce;
 use perigrain_plan::{LeftOut, Level, Op, Stage, When};
 use perigrain_styles::pair::Deck;
-use perigrain_styles::probe::Probe;
+use perigrain_styles::probe::{Probe, WallProbe};
 use perigrain_styles::{BondFormula, Compute, Gravity, Names, PlaceTest, Pull, Reading, SealCx, Text, Wants};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::{SlotId, World};
@@ -186,6 +186,16 @@ impl SealCx for Sealer<'_> {
 
     fn singles(&mut self) -> Result<Vec<Box<dyn Probe>>> {
         self.probes_of(true)
+    }
+
+    fn wall_probes(&mut self) -> Result<Vec<(String, Box<dyn WallProbe>)>> {
+        let (graph, mut probes) = (self.graph, vec![]);
+        for node in &graph.fixes {
+            if let Some(probe) = node.fix.wall_probe(self)? {
+                probes.push((node.id.clone(), probe));
+            }
+        }
+        Ok(probes)
     }
 
     fn cutoff(&mut self) -> Option<f64> {

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! and that at H = 0 where the two overlap. It ruptures at H = (1 + θ/2) V^(1/3), θ in radians (Lian et al. 1993), if no other
-//! distance is given. Rabinovich, Esayanur & Moudgil 2005, doi 10.1021/la0517639, eq. 19 with d from eq. 20: 1 + H/(2 d) with
-//! 2 d = −H + √(H² + c), without the second term, which Lambert et al. 2008 (doi 10.1021/la7036444) found to be counted twice. Willett, Adams, Johnson & Seville 2000, doi 10.1021/la000657y, eq. 12 (their half distance doubled).
+//! distance is given. Rabinovich, Esayanur & Moudgil 2005, doi 10.1021/la0517639, as LIGGGHTS' manual has it (gran_cohesion_washino_capillary_viscous): 1 + H/(2 d) with
+//! 2 d = −H + √(H² + c), without the second term, which Lambert et al. 2008 (doi 10.1021/la7036444) found to be counted twice. Willett, Adams, Johnson & Seville 2000, doi 10.1021/la000657y, the short fit (their half distance doubled).
 //! Lian, Thornton & Adams 1993, doi 10.1006/jcis.1993.1452. The ring's own weight and viscosity are left out.
 
 use super::super::Geometry;

@@ -21,7 +21,7 @@ pub struct Line {
     meeting: Meeting,
 }
 
-/// Words about particles that meet, which a wall has no use for.
+/// Words about particles that meet, of which a wall has use for `arms middle` alone.
 #[derive(Words)]
 struct Meeting {
     /// The cutoff, which sets the reach of the neighbour list by hand [length].

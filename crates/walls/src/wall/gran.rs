@@ -390,7 +390,7 @@ impl Surface for Running {
         self.steered.is_some()
     }
 
-    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+    fn show(&self, w: &World, _: Option<u16>, see: &mut dyn FnMut(&dyn Wall)) {
         match &self.steered {
             Some(steered) => self.stand(w, &mut |wall| see(&steered.shifted(wall))),
             None => self.stand(w, see),

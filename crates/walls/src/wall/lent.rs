@@ -2,16 +2,17 @@
 
 use super::words::Ruled;
 use perigrain_base::diag::{Code, Diagnostic, Result};
-use perigrain_contact::{Arm, Cohesion, Granular, Heat, Model, Rolling, Twisting};
+use perigrain_contact::{Arm, Cohesion, Friction, Granular, Heat, Model, Rolling, Twisting};
 use perigrain_pairs::GRANULAR_RULES;
-use perigrain_styles::words::{At, OneType, Words};
+use perigrain_styles::words::{At, Nullable, OneType, Words};
 use perigrain_world::World;
 
 /// Whose laws a wall has.
 #[derive(Clone, Words)]
 pub struct Lent {
-    #[word(name = "T", what = "the type of the wall")]
-    kind: At<OneType>,
+    /// `NULL`: the types of the surfaces behind `of`, each of which has its own.
+    #[word(name = "T|NULL", what = "the type of the wall")]
+    kind: At<Nullable<OneType>>,
     /// The parts of the laws that the wall has; without this word it has all of them.
     #[word(keyword, name = "part", list, least = 1)]
     only: Vec<Section>,
@@ -24,23 +25,49 @@ enum Section {
     Normal,
     Damping,
     Tangential,
+    /// The friction of the law without its spring: γ_t v_t, at most μ F_n.
+    #[word("no_history")]
+    NoHistory,
     Rolling,
     Twisting,
     Cohesion,
     Heat,
+    /// `limit_damping`, where the law has it.
+    Limit,
 }
 
 impl Lent {
-    /// The type.
-    pub fn kind(&self) -> u16 {
-        self.kind.value.0
+    /// The type; `None` where each surface of the wall has its own.
+    pub fn kind(&self) -> Option<u16> {
+        self.kind.value.0.map(|OneType(kind)| kind)
     }
 
-    /// The laws of all types of grains with this one, those that are equal together.
+    /// The laws of all types of grains with this wall, those that are equal together, type by type of the surfaces it has.
     ///
     /// # Errors
     /// Another pair style, and laws that walls cannot have.
-    pub fn laws(&self, w: &World) -> Result<Vec<Ruled>> {
+    pub fn laws(&self, w: &World, surfaces: &[u16]) -> Result<Vec<Ruled>> {
+        if let Some(own) = self.kind() {
+            return self.laws_with(w, own);
+        }
+        if surfaces.is_empty() {
+            let text = "`coeff NULL` belongs to a wall of surfaces";
+            let d = Diagnostic::error(Code::CONFLICT, self.kind.span, text);
+            return Err(d.help("write the type of the wall, or `fix … wall/mesh coeff NULL of ID …`").into());
+        }
+        let mut laws = vec![];
+        for own in surfaces {
+            let of_surface = |rule: Ruled| Ruled { surface: Some(*own), ..rule };
+            laws.extend(self.laws_with(w, *own)?.into_iter().map(of_surface));
+        }
+        Ok(laws)
+    }
+
+    /// The laws of all types of grains with one type, those that are equal together.
+    ///
+    /// # Errors
+    /// Another pair style, and laws that walls cannot have.
+    fn laws_with(&self, w: &World, own: u16) -> Result<Vec<Ruled>> {
         let error = |text: String, help: &str| {
             Err(Diagnostic::error(Code::INCOMPLETE, self.kind.span, text).help(help.to_string()).into())
         };
@@ -51,7 +78,6 @@ impl Lent {
                 "write `pair_style granular` and its `pair_coeff` lines, or `granular MODELS` for this wall",
             );
         };
-        let own = self.kind();
         let mut laws: Vec<(Granular, Vec<bool>)> = vec![];
         for kind in 1..=w.types as u16 {
             let Some(rule) = rules.get(kind, own) else {
@@ -74,7 +100,8 @@ impl Lent {
             laws[known].1[at] = true;
         }
         let one = laws.len() == 1;
-        Ok(laws.into_iter().map(|(law, kinds)| (law, (!one).then_some(kinds))).collect())
+        let ruled = |(law, kinds)| Ruled { law, kinds: (!one).then_some(kinds), surface: None };
+        Ok(laws.into_iter().map(ruled).collect())
     }
 
     /// A law without the parts that the line leaves out.
@@ -88,8 +115,12 @@ impl Lent {
         if !has(Section::Damping) {
             (law.damping, law.damping_constant) = (none.damping, none.damping_constant);
         }
-        if !has(Section::Tangential) {
+        let glides = self.only.contains(&Section::NoHistory);
+        if !has(Section::Tangential) && !glides {
             law.spring = none.spring;
+        }
+        if glides && law.spring.kind != Friction::None {
+            law.spring.kind = Friction::LinearNohistory;
         }
         if !has(Section::Rolling) {
             law.rolling = Rolling::None;
@@ -103,6 +134,7 @@ impl Lent {
         if !has(Section::Heat) {
             law.heat = Heat::None;
         }
+        law.limit_damping &= has(Section::Limit);
         law
     }
 }

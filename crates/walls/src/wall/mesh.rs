@@ -209,7 +209,7 @@ impl Surface for Tracked {
         self.running.place(w, t)
     }
 
-    fn show(&self, _w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+    fn show(&self, _w: &World, _: Option<u16>, see: &mut dyn FnMut(&dyn Wall)) {
         see(&Placed(&self.running));
     }
 

@@ -23,6 +23,7 @@ use perigrain_plan::{Op, Tick};
 use perigrain_styles::critical::WALL_SPRINGS;
 use perigrain_styles::ledger::WALL_TOUCHES;
 use perigrain_styles::pair::Deck;
+use perigrain_styles::probe::WallProbe;
 use perigrain_styles::{BuildCx, SealCx, Shape};
 use perigrain_world::contacts::Contacts;
 use perigrain_world::{GroupId, Key, Numbers, Outline, World};
@@ -39,8 +40,16 @@ trait Surface: Send {
         false
     }
 
-    /// Passes the wall's current state to `see`.
-    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall));
+    /// Passes the wall's current state to `see`, or that of its surfaces of one type.
+    fn show(&self, w: &World, of: Option<u16>, see: &mut dyn FnMut(&dyn Wall));
+
+    /// Moves it to where it is after a step, where the world alone shows this ([`Form::SHOWS`]).
+    fn follow(&mut self, _w: &World) {}
+
+    /// Which surface of the wall (from 0) has a part, and the number of the part among the triangles of its file (from 0).
+    fn piece(&self, part: u32) -> [u32; 2] {
+        [0, part]
+    }
 
     /// Stores local values of the contacts found, [`Form::LOCAL`] columns.
     fn local(&mut self, _w: &mut World, _contacts: &[(&Touch, &Wrench)], _t: &Tick) -> Vec<f64> {
@@ -67,6 +76,13 @@ trait Form: Clone + Send + 'static {
     const STYLE: &'static str;
     /// Columns of local values.
     const LOCAL: usize = 0;
+    /// Whether `compute wall/local` can look at its contacts.
+    const SHOWS: bool = false;
+
+    /// The types of its surfaces, ascending, where these have types of their own.
+    fn kinds(&self, _w: &World) -> Vec<u16> {
+        vec![]
+    }
 
     /// The wall for a run.
     ///
@@ -130,8 +146,18 @@ impl<F: Form> Fix for Declared<F> {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         plastic::suits(&self.common.material, cx)?;
         let surface = self.form.surface(&self.common, cx)?;
-        let op = op::WallOp::new(F::STYLE, F::LOCAL, &self.common, surface, cx)?;
+        let kinds = self.form.kinds(cx.world());
+        let op = op::WallOp::new((F::STYLE, F::LOCAL), &self.common, surface, &kinds, cx)?;
         Ok(if op.is_plastic() { op::halves(op) } else { vec![Box::new(op)] })
+    }
+
+    fn wall_probe(&self, cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>> {
+        if !F::SHOWS {
+            return Ok(None);
+        }
+        let surface = self.form.surface(&self.common, cx)?;
+        let kinds = self.form.kinds(cx.world());
+        Ok(Some(Box::new(op::Looking::new(&self.common, surface, &kinds, cx)?)))
     }
 
     fn declare(&self, w: &mut World) -> Result<()> {
@@ -144,7 +170,7 @@ impl<F: Form> Fix for Declared<F> {
         let key = self.common.key(F::STYLE);
         forget(w, key);
         w.memo.remove(key);
-        for k in 0..w.types.max(1) {
+        for k in 0..w.types.max(1).pow(2) {
             let contacts: Key<Contacts> = Key::new(&op::memory_name(&self.common.id, k));
             w.wall_contacts.remove(contacts);
             if let Some(springs) = w.facts.get_mut(*WALL_SPRINGS) {
@@ -168,8 +194,10 @@ impl<F: Form> Fix for Declared<F> {
     }
 
     fn contact_time(&self, w: &World, deck: Deck) -> Option<f64> {
-        let laws = self.common.material.laws(w).ok()?;
-        let time = |(law, _): &words::Ruled| durations::on_wall(w, law, self.common.group.bit(), deck);
+        let laws = self.common.material.laws(w, &self.form.kinds(w)).ok()?;
+        let time = |words::Ruled { law, .. }: &words::Ruled| {
+            durations::on_wall(w, law, self.common.group.bit(), deck)
+        };
         laws.iter().filter_map(time).reduce(f64::min)
     }
 }

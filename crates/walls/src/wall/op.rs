@@ -1,6 +1,7 @@
 //! The op of a wall: lists nearby particles, finds contacts, and computes forces on particles and wall.
 
 mod half;
+mod looking;
 
 use super::peace::Peace;
 use super::plastic::Plastic;
@@ -28,6 +29,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 pub use half::halves;
+pub use looking::Looking;
 
 /// Columns of `contacts`: in contact or not, force, the wall's nearest point, radius.
 pub const COLUMNS: usize = 8;
@@ -72,6 +74,8 @@ struct Part {
     law: Granular,
     /// Whether each type of grains (from 1) has this law; all have where nothing stands.
     kinds: Option<Vec<bool>>,
+    /// The type of the surfaces that have it; all have where nothing stands.
+    on: Option<u16>,
     /// Key of the contact memory.
     key: Key<Contacts>,
     sweep: WallSweep,
@@ -81,12 +85,12 @@ struct Part {
 
 impl Part {
     /// Those of a wall.
-    fn all(common: &Common, w: &World) -> Result<Vec<Self>> {
-        let part = |(k, (law, kinds)): (usize, Ruled)| {
+    fn all(common: &Common, kinds: &[u16], w: &World) -> Result<Vec<Self>> {
+        let part = |(k, Ruled { law, kinds, surface }): (usize, Ruled)| {
             let key = Key::new(&memory_name(&common.id, k));
-            Self { law, kinds, key, sweep: WallSweep::default(), kept: None }
+            Self { law, kinds, on: surface, key, sweep: WallSweep::default(), kept: None }
         };
-        Ok(common.material.laws(w)?.into_iter().enumerate().map(part).collect())
+        Ok(common.material.laws(w, kinds)?.into_iter().enumerate().map(part).collect())
     }
 }
 
@@ -160,13 +164,13 @@ impl WallOp {
     /// # Errors
     /// Anything that a wall with a temperature lacks.
     pub fn new(
-        style: &str,
-        local: usize,
+        (style, local): (&str, usize),
         common: &Common,
         surface: Box<dyn Surface>,
+        kinds: &[u16],
         cx: &mut dyn SealCx,
     ) -> Result<Self> {
-        let parts = Part::all(common, cx.world())?;
+        let parts = Part::all(common, kinds, cx.world())?;
         let conducts = parts.iter().any(|part| part.law.heat != Heat::None);
         let warmth = Warmth::new(common, conducts, cx)?;
         Ok(Self {
@@ -212,10 +216,10 @@ impl WallOp {
         // move half a skin back, and one whose anchor is known a whole skin.
         let far = 1.5 * s.skin;
         let Self { surface, parts, bit, .. } = self;
-        for Part { law, kinds, sweep, .. } in parts {
+        for Part { law, kinds, on, sweep, .. } in parts {
             let kinds = kinds.as_deref().map(|some| (&w.particles.kind[..], some));
             let which = Meeting { mask: &w.particles.mask, group: *bit, rows, kinds };
-            surface.show(w, &mut |wall| sweep.list(wall, grains, &which, law, far));
+            surface.show(w, *on, &mut |wall| sweep.list(wall, grains, &which, law, far));
         }
         (self.generation, self.deal) = (Some(w.rebuild.generation), deal);
         self.was_part |= deal.is_some();
@@ -245,12 +249,12 @@ impl WallOp {
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         self.list(w, &grains);
         let Self { surface, parts, .. } = self;
-        for (Part { law, sweep, kept, .. }, memory) in parts.iter_mut().zip(memories) {
+        for (Part { law, on, sweep, kept, .. }, memory) in parts.iter_mut().zip(memories) {
             // The setup only evaluates forces; LAMMPS nevertheless shortens the springs of sliding contacts.
             *kept = (t.setup && !w.settings.lammps()).then(|| memory.clone());
             match sweep.listed() {
                 0 => sweep.leave(law, memory),
-                _ => surface.show(w, &mut |wall| sweep.meet(wall, &grains, law, memory)),
+                _ => surface.show(w, *on, &mut |wall| sweep.meet(wall, &grains, law, memory)),
             }
         }
     }
@@ -310,8 +314,8 @@ impl WallOp {
             Spheres { x: &p.x, v: &p.v, omega: &p.omega, radius: &p.radius, mass: &p.mass, tag: &p.tag };
         let Self { surface, parts, .. } = self;
         let mut least = skin;
-        for Part { law, sweep, .. } in parts.iter_mut().filter(|part| part.sweep.listed() > 0) {
-            surface.show(w, &mut |wall| least = least.min(sweep.room(wall, &grains, law, skin)));
+        for Part { law, on, sweep, .. } in parts.iter_mut().filter(|part| part.sweep.listed() > 0) {
+            surface.show(w, *on, &mut |wall| least = least.min(sweep.room(wall, &grains, law, skin)));
         }
         least
     }

@@ -192,7 +192,7 @@ impl Surface for Running {
         Ok(region.travel(before, corners.as_ref().map_or(&[], |c| &c[..])))
     }
 
-    fn show(&self, w: &World, see: &mut dyn FnMut(&dyn Wall)) {
+    fn show(&self, w: &World, _: Option<u16>, see: &mut dyn FnMut(&dyn Wall)) {
         let faces = Faces {
             // Contact points were just found, so that the region exists.
             region: w.regions.get(self.name),

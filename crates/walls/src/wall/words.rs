@@ -33,7 +33,7 @@ const fn style(word: &'static str, about: &'static str, parts: &'static [Part]) 
 pub const FORCE: Kind = Kind::Choice(&[
     style(
         "granular",
-        "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material).",
+        "Models of `pair_coeff … granular`, which describe a grain on this wall (for `hertz/material` two bodies of that material); arms of friction are R, with `arms middle` R − δ/2.",
         &[Part::bare("MODELS", Kind::Words(words::Models::GRAMMAR))],
     ),
     style(
@@ -134,8 +134,15 @@ impl Rest {
     }
 }
 
-/// A law, and whether each type (from 1) has it.
-pub type Ruled = (Granular, Option<Vec<bool>>);
+/// A law and where it holds.
+pub struct Ruled {
+    /// The law.
+    pub law: Granular,
+    /// Whether each type of grains (from 1) has it; all have where nothing stands.
+    pub kinds: Option<Vec<bool>>,
+    /// The type of the surfaces that have it; all have where nothing stands.
+    pub surface: Option<u16>,
+}
 
 /// Materials of a wall and of the grains on it.
 #[derive(Clone)]
@@ -151,14 +158,14 @@ pub struct Material {
 }
 
 impl Material {
-    /// The laws of the wall's contacts, each with the types of grains (from 1) that have it; no types where all have it.
+    /// The laws of the contacts of a wall, which has surfaces of these types.
     ///
     /// # Errors
     /// Coefficients that are missing.
-    pub fn laws(&self, w: &World) -> Result<Vec<Ruled>> {
+    pub fn laws(&self, w: &World, surfaces: &[u16]) -> Result<Vec<Ruled>> {
         match &self.lent {
-            Some(lent) => lent.laws(w),
-            None => Ok(vec![(self.law(w.settings.compat), None)]),
+            Some(lent) => lent.laws(w, surfaces),
+            None => Ok(vec![Ruled { law: self.law(w.settings.compat), kinds: None, surface: None }]),
         }
     }
 
@@ -191,7 +198,13 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
         Ok::<_, Diagnostics>(model)
     };
     let model = match word.text.as_str() {
-        "granular" => granular(args, cx, ends)?,
+        // As in LAMMPS, friction acts on a grain at its full radius, whatever the overlap, unless the line says `arms middle`.
+        "granular" => {
+            let arms = names_arms(args, ends);
+            let model = granular(args, cx, ends)?;
+            let arm = if arms { model.arm } else { Arm::Radius };
+            return Ok(Material { model: Model { arm, ..model }, own: None, lent: None, span });
+        }
         "hooke" => classic(false, false, args)?,
         "hooke/history" => classic(false, true, args)?,
         "hertz/history" => classic(true, true, args)?,
@@ -199,8 +212,13 @@ pub fn force(args: &mut Args, cx: &BuildCx, ends: &[&str]) -> Result<Material> {
             return Err(unknown_force(word, ends).into());
         }
     };
-    // As in LAMMPS, friction acts on a grain at its full radius, whatever the overlap.
     Ok(Material { model: Model { arm: Arm::Radius, ..model }, own: None, lent: None, span })
+}
+
+/// Whether the words of a force choose the arms of friction.
+fn names_arms(args: &Args, ends: &[&str]) -> bool {
+    let words = (0..).map_while(|k| args.peek_at(k)).take_while(|word| !ends.contains(&word.text.as_str()));
+    words.into_iter().any(|word| word.text == "arms")
 }
 
 /// The error for a word that is not a force style of walls: a normal model lacks `granular` before it; a word

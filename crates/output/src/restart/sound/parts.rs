@@ -86,7 +86,9 @@ pub fn stand(w: &World) -> bool {
 
 pub fn rebuild(w: &World) -> Outcome {
     let r = w.rebuild.past();
-    must(r.kept.x.len() == r.kept.turns.len(), "places of kept lists and their turns differ in number")?;
+    // No turns where no particle has gone around the box since.
+    let turns = r.kept.turns.len();
+    must(turns == 0 || turns == r.kept.x.len(), "places of kept lists and their turns differ in number")?;
     must(
         !r.unmoved || w.particles.style.peri,
         "nothing has moved since a creation whose places are not stored",

@@ -9,6 +9,7 @@ use perigrain_plan::Tick;
 use perigrain_styles::SealCx;
 use perigrain_styles::mesh_surface::{MeshSurface, SURFACES, SurfacePose};
 use perigrain_world::{Numbers, Outline, SlotId, World};
+use std::collections::BTreeSet;
 
 /// Surfaces by the IDs of their fixes.
 #[derive(Clone)]
@@ -19,6 +20,13 @@ pub struct Leaning {
 
 impl Form for Leaning {
     const STYLE: &'static str = "wall/mesh";
+    const SHOWS: bool = true;
+
+    fn kinds(&self, w: &World) -> Vec<u16> {
+        let all = w.facts.get(*SURFACES);
+        let kinds = self.ids.iter().filter_map(|(id, _)| Some(all?.look_up(id)?.kind));
+        kinds.collect::<BTreeSet<u16>>().into_iter().collect()
+    }
 
     fn declare(&self, _w: &mut World, _key: Numbers) {}
 
@@ -28,9 +36,8 @@ impl Form for Leaning {
     }
 
     fn surface(&self, fix: &Common, cx: &mut dyn SealCx) -> Result<Box<dyn Surface>> {
-        let mut surfaces = vec![];
-        let mut first = 0;
-        for (id, span) in &self.ids {
+        let mut surfaces: Vec<One> = vec![];
+        for (place, (id, span)) in self.ids.iter().enumerate() {
             let slot = cx.slot(&format!("f_{id}"));
             let known = cx.world().facts.get(*SURFACES).and_then(|all| all.look_up(id)).cloned();
             let Some(surface) = known else {
@@ -39,19 +46,25 @@ impl Form for Leaning {
                     .help("declare it above this line with `fix ID all surface FILE type T`")
                     .into());
             };
-            if let Some(kind) = fix.material.lent.as_ref().map(super::super::words::Lent::kind)
+            if let Some(kind) = fix.material.lent.as_ref().and_then(super::super::words::Lent::kind)
                 && kind != surface.kind
             {
                 let text = format!("surface `{id}` is of type {}, this wall of type {kind}", surface.kind);
                 let d = Diagnostic::error(Code::CONFLICT, *span, text);
-                return Err(d.help("give surfaces of each type a wall of their own").into());
+                return Err(d.help("`coeff NULL` has the law of each surface's own type").into());
             }
-            let count = surface.mesh.triangles().len() as u32;
             let areas = surface.mesh.triangles().iter().map(perigrain_mesh::area).collect();
             let (pose, corners) = (surface.pose(cx.world()), surface.corners());
             let (is_first, moves) = (pose.is_first(), pose.moves());
-            surfaces.push(One { surface, slot, first, pose, is_first, moves, corners, areas });
-            first += count;
+            let place = place as u32;
+            surfaces.push(One { surface, slot, place, first: 0, pose, is_first, moves, corners, areas });
+        }
+        // Those of one type stand together.
+        surfaces.sort_by_key(|one| one.surface.kind);
+        let mut first = 0;
+        for one in &mut surfaces {
+            one.first = first;
+            first += one.count();
         }
         Ok(Box::new(All { surfaces }))
     }
@@ -61,6 +74,8 @@ impl Form for Leaning {
 struct One {
     surface: MeshSurface,
     slot: SlotId,
+    /// Its number in the line, from 0.
+    place: u32,
     /// The number of its first triangle among those of all surfaces.
     first: u32,
     pose: SurfacePose,
@@ -185,8 +200,25 @@ impl Surface for All {
         self.surfaces.iter().all(|one| one.surface.movers.is_empty() && !one.surface.steered)
     }
 
-    fn show(&self, _w: &World, see: &mut dyn FnMut(&dyn Wall)) {
-        see(&Placed(&self.surfaces));
+    fn show(&self, _w: &World, of: Option<u16>, see: &mut dyn FnMut(&dyn Wall)) {
+        let all = &self.surfaces;
+        see(&Placed(match of {
+            None => all,
+            Some(kind) => {
+                let from = all.partition_point(|one| one.surface.kind < kind);
+                &all[from..all.partition_point(|one| one.surface.kind <= kind)]
+            }
+        }));
+    }
+
+    fn follow(&mut self, w: &World) {
+        self.surfaces.iter_mut().for_each(|one| one.pose = one.surface.pose(w));
+    }
+
+    fn piece(&self, part: u32) -> [u32; 2] {
+        let one = &self.surfaces[Placed(&self.surfaces).of(part)];
+        let number = one.surface.numbers.get((part - one.first) as usize).map_or(part, |number| number - 1);
+        [one.place, number]
     }
 
     fn feel(&mut self, w: &mut World, contacts: &[(&Touch, &Wrench)], _: [f64; op::FELT], t: &Tick) {
