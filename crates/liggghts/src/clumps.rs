@@ -18,6 +18,8 @@ pub(crate) struct Movers {
     written: bool,
     /// Particles have molecule IDs.
     molecules: bool,
+    /// A template that was refused: what it would have been is not missed again.
+    refused: Option<String>,
 }
 
 const KEYWORDS: &[&str] = &[
@@ -68,6 +70,14 @@ struct Parts {
 impl Translator {
     /// `fix ID group particletemplate/multisphere SEED … nspheres n ntry N spheres … type T`: a native clump.
     pub(crate) fn clump(&mut self, cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
+        let lines = self.template_of_spheres(cmd, args);
+        if lines.is_err() {
+            self.movers.refused = Some(cmd.args[0].text.clone());
+        }
+        lines
+    }
+
+    fn template_of_spheres(&mut self, cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
         if self.movers.written {
             let text = "a template below the fix multisphere that moves its grains";
             let d = Diagnostic::error(Code::WRONG_ORDER, cmd.args[2].span, text);
@@ -203,7 +213,7 @@ impl Translator {
         }
         self.movers.id = Some(cmd.args[0].clone());
         self.movers.waits = Some(cmd.clone());
-        if self.templates.values().any(|template| template.clump) { self.bodies() } else { Ok(vec![]) }
+        if self.has_clumps() || self.movers.refused.is_some() { self.bodies() } else { Ok(vec![]) }
     }
 
     /// The native fix that moves grains of several spheres, if it is still to be written.
@@ -213,6 +223,10 @@ impl Translator {
         let mut line = Line::styled(&cmd, "rigid/small");
         line.put("molecule", at);
         let names: Vec<&String> = self.templates.iter().filter(|(_, t)| t.clump).map(|(id, _)| id).collect();
+        if let (true, Some(id)) = (names.is_empty(), &self.movers.refused) {
+            let text = format!("there is no particletemplate `{id}`");
+            return Err(Diagnostic::error(Code::UNKNOWN_FIX, at, text).into());
+        }
         if names.is_empty() {
             let text = "fix multisphere moves grains of `particletemplate/multisphere`, and there is none";
             return Err(Diagnostic::error(Code::INCOMPLETE, at, text).into());
@@ -276,6 +290,10 @@ impl Translator {
 
     fn body_fix(&self, cmd: &Command) -> Result<Word> {
         let at = cmd.args[2].span;
+        if let (Some(id), Some(_)) = (&self.movers.id, &self.movers.refused) {
+            let text = format!("there is no fix `{}`", id.text);
+            return Err(Diagnostic::error(Code::UNKNOWN_FIX, at, text).into());
+        }
         self.mover_id().map(|id| Word::new(&id.text, at)).ok_or_else(|| {
             let text = format!(
                 "`{}` reads the bodies of a fix multisphere, and none stands above",

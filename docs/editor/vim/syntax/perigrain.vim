@@ -23,6 +23,7 @@ syntax match perigrainCommand /\v^\s*\zsboundary\S@!/
 syntax match perigrainCommand /\v^\s*\zscalibrate\S@!/
 syntax match perigrainCommand /\v^\s*\zschange_box\S@!/
 syntax match perigrainCommand /\v^\s*\zsclear\S@!/
+syntax match perigrainCommand /\v^\s*\zsclump\S@!/
 syntax match perigrainCommand /\v^\s*\zscomm_modify\S@!/
 syntax match perigrainCommand /\v^\s*\zscomm_style\S@!/
 syntax match perigrainCommand /\v^\s*\zscompat\S@!/
