@@ -64,7 +64,7 @@ impl Session {
         let deck = Deck { to_come: &to_come, ..self.deck_facts() };
         let pairs = g.pair.iter().flat_map(|n| sub_styles(n.pair.as_ref())).map(|p| p.scales(w, deck));
         let own = pairs.flat_map(|p| [p.sure_step.map(|s| 0.8 * s), p.contact_time.map(|c| 0.05 * c)]);
-        let walls = g.fixes.iter().map(|f| f.fix.contact_time(w, deck).map(|c| 0.05 * c));
+        let walls = g.fixes.iter().map(|f| f.fix.wall()?.contact_time(w, deck).map(|c| 0.05 * c));
         own.chain(walls).flatten().reduce(f64::min).map(|longest| longest / w.clock.dt)
     }
 
@@ -145,7 +145,11 @@ impl Session {
         });
         let walls = self.graph.fixes.iter();
         let walls = walls.filter_map(|f| {
-            Some((f.fix.contact_time(&self.world, deck)?, whole, format!(" with the wall of fix {}", f.id)))
+            Some((
+                f.fix.wall()?.contact_time(&self.world, deck)?,
+                whole,
+                format!(" with the wall of fix {}", f.id),
+            ))
         });
         let worst = pairs.chain(walls).reduce(|a, b| if b.0 * a.1 < a.0 * b.1 { b } else { a });
         let Some((contact, dt, wall)) = worst.filter(|(contact, dt, _)| *dt > 0.1 * contact) else { return };

@@ -94,11 +94,11 @@ impl Other {
             return Self::mark(self.walls.len() - 1);
         }
         let found = self.seen.line(line);
-        self.told(out, line, found)
+        self.shown(out, line, found)
     }
 
     /// The text of a line, or why there is none.
-    fn told(&self, out: &mut Rewritten, line: &Command, found: Result<String, &str>) -> String {
+    fn shown(&self, out: &mut Rewritten, line: &Command, found: Result<String, &str>) -> String {
         found.unwrap_or_else(|why| {
             out.lost += 1;
             format!("# NOT IN LAMMPS: {} ({why})", line.text)
@@ -121,7 +121,7 @@ impl Other {
     /// Writes the walls in the places of their marks.
     fn settle(&self, out: &mut Rewritten) {
         for (k, wall) in self.walls.iter().enumerate() {
-            let text = self.told(out, wall, self.seen.wall(wall));
+            let text = self.shown(out, wall, self.seen.wall(wall));
             out.text = out.text.replacen(&Self::mark(k), &text, 1);
         }
     }

@@ -138,14 +138,6 @@ pub trait Fix: DynClone + Send {
     /// What is missing in the scene.
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>>;
 
-    /// A probe of the contacts with it, if it is a wall of surfaces. The caller's op reads `wall_contacts`.
-    ///
-    /// # Errors
-    /// What is missing in the scene.
-    fn wall_probe(&self, _cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>> {
-        Ok(None)
-    }
-
     /// Captures what it needs from the scene when it is declared (positions, the present step).
     ///
     /// # Errors
@@ -173,9 +165,8 @@ pub trait Fix: DynClone + Send {
         fail(Code::WRONG_KIND, span, "this fix has no rigid bodies")
     }
 
-    /// The duration of the shortest contacts with it, if it is a wall for grains; `deck`: what the deck states about particles
-    /// that do not exist yet.
-    fn contact_time(&self, _w: &World, _deck: Deck) -> Option<f64> {
+    /// As a wall for grains, if it is one.
+    fn wall(&self) -> Option<&dyn GrainWall> {
         None
     }
 
@@ -196,6 +187,18 @@ pub trait Fix: DynClone + Send {
         }
         Ok(())
     }
+}
+
+/// A fix that is a wall for grains.
+pub trait GrainWall {
+    /// The duration of the shortest contacts with it; `deck`: what the deck states about particles that do not exist yet.
+    fn contact_time(&self, w: &World, deck: Deck) -> Option<f64>;
+
+    /// A probe of the contacts with it, if it leans on surfaces. The caller's op reads `wall_contacts`.
+    ///
+    /// # Errors
+    /// What is missing in the scene.
+    fn probe(&self, cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>>;
 }
 
 /// What stands before the options of `fix_modify` that belong to a style.

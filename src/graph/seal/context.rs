@@ -191,7 +191,8 @@ impl SealCx for Sealer<'_> {
     fn wall_probes(&mut self) -> Result<Vec<(String, Box<dyn WallProbe>)>> {
         let (graph, mut probes) = (self.graph, vec![]);
         for node in &graph.fixes {
-            if let Some(probe) = node.fix.wall_probe(self)? {
+            let Some(wall) = node.fix.wall() else { continue };
+            if let Some(probe) = wall.probe(self)? {
                 probes.push((node.id.clone(), probe));
             }
         }

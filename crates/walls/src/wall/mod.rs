@@ -21,6 +21,7 @@ use perigrain_lang::{Args, Param};
 use perigrain_pairs::contact::durations;
 use perigrain_plan::{Op, Tick};
 use perigrain_styles::critical::WALL_SPRINGS;
+use perigrain_styles::fix::GrainWall;
 use perigrain_styles::ledger::WALL_TOUCHES;
 use perigrain_styles::pair::Deck;
 use perigrain_styles::probe::WallProbe;
@@ -151,15 +152,6 @@ impl<F: Form> Fix for Declared<F> {
         Ok(if op.is_plastic() { op::halves(op) } else { vec![Box::new(op)] })
     }
 
-    fn wall_probe(&self, cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>> {
-        if !F::SHOWS {
-            return Ok(None);
-        }
-        let surface = self.form.surface(&self.common, cx)?;
-        let kinds = self.form.kinds(cx.world());
-        Ok(Some(Box::new(op::Looking::new(&self.common, surface, &kinds, cx)?)))
-    }
-
     fn declare(&self, w: &mut World) -> Result<()> {
         self.form.declare(w, self.common.key(F::STYLE));
         w.outlines.insert(Key::new(&self.common.id), self.form.outline());
@@ -193,12 +185,27 @@ impl<F: Form> Fix for Declared<F> {
         Shape { vector: op::FELT, vector_extensive: true, atom, local: F::LOCAL, ..Shape::default() }
     }
 
+    fn wall(&self) -> Option<&dyn GrainWall> {
+        Some(self)
+    }
+}
+
+impl<F: Form> GrainWall for Declared<F> {
     fn contact_time(&self, w: &World, deck: Deck) -> Option<f64> {
         let laws = self.common.material.laws(w, &self.form.kinds(w)).ok()?;
         let time = |words::Ruled { law, .. }: &words::Ruled| {
             durations::on_wall(w, law, self.common.group.bit(), deck)
         };
         laws.iter().filter_map(time).reduce(f64::min)
+    }
+
+    fn probe(&self, cx: &mut dyn SealCx) -> Result<Option<Box<dyn WallProbe>>> {
+        if !F::SHOWS {
+            return Ok(None);
+        }
+        let surface = self.form.surface(&self.common, cx)?;
+        let kinds = self.form.kinds(cx.world());
+        Ok(Some(Box::new(op::Looking::new(&self.common, surface, &kinds, cx)?)))
     }
 }
 

@@ -298,6 +298,7 @@ syntax match perigrain_compute_style /\vtorque\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vvacf\S@!/ contained
 syntax match perigrain_compute_style /\vvacf\/chunk\S@!/ contained
 syntax match perigrain_compute_style /\vvcm\/chunk\S@!/ contained
+syntax match perigrain_compute_style /\vwall\/local\S@!/ contained
 highlight default link perigrain_compute_style Type
 syntax match perigrainCommand /\v^\s*\zsdump\S@!/ nextgroup=perigrain_dump_1 skipwhite
 syntax match perigrain_dump_1 /\S\+/ contained nextgroup=perigrain_dump_2 skipwhite
