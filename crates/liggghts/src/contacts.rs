@@ -29,12 +29,13 @@ const STRESSES: &[&str] = &["ke", "pair", "bond", "angle", "dihedral", "improper
 
 impl Translator {
     /// `compute ID group pair/gran/local [keywords]`.
-    pub(crate) fn contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+    pub(crate) fn contacts(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
         let asked = args.rest().to_vec();
         let known: Vec<&str> = COLUMNS.iter().map(|(word, ..)| *word).collect();
         if let Some(word) = asked.iter().find(|word| !known.contains(&word.text.as_str())) {
             return Err(unknown(word, "keyword of compute pair/gran/local", &known).into());
         }
+        self.local_values(cmd);
         let mut line = Line::styled(cmd, "pair/local");
         for (word, columns, usual) in COLUMNS {
             let given = asked.iter().find(|a| a.text == *word);
@@ -55,6 +56,27 @@ impl Translator {
         }
         line.put("cutoff radius", cmd.span);
         Ok(Some(vec![line.done()]))
+    }
+
+    /// A compute whose values are those of contacts or bonds.
+    pub(crate) fn local_values(&mut self, cmd: &Command) -> Option<Vec<Command>> {
+        self.local.insert(cmd.args.first()?.text.clone());
+        None
+    }
+
+    /// `compute ID group reduce MODE inputs`: native lines have a word for values of contacts.
+    pub(crate) fn reduced(&self, cmd: &Command) -> Option<Vec<Command>> {
+        let is_local = |text: &str| {
+            let id = text.strip_prefix("c_").and_then(|t| t.split('[').next());
+            id.is_some_and(|id| self.local.contains(id))
+        };
+        let input = cmd.args.iter().find(|w| is_local(&w.text))?;
+        if cmd.args.iter().any(|w| w.text == "inputs") {
+            return None;
+        }
+        let mut line = Line::new(cmd, &cmd.name.text);
+        line.words(&cmd.args).put("inputs local", input.span);
+        Some(vec![line.done()])
     }
 
     /// How many numbers a contact remembers: the tangential spring, the torque of a rolling spring.

@@ -65,7 +65,7 @@ impl Translator {
         let id = &cmd.args.first()?.text;
         self.surfaces.remove(id);
         if !self.own.remove(id) {
-            return None;
+            return self.unfix_parts(cmd);
         }
         self.templates.remove(id);
         if self.mixtures.remove(id) {
@@ -74,6 +74,17 @@ impl Translator {
         self.properties.retain(|_, p| p.id != *id);
         self.version += 1;
         Some(vec![])
+    }
+
+    /// `unfix` of a wall on surfaces of several types ends all its parts.
+    fn unfix_parts(&mut self, cmd: &Command) -> Option<Vec<Command>> {
+        let parts = self.parts.remove(&cmd.args[0].text).filter(|parts| !parts.is_empty())?;
+        let part = |id: &String| {
+            let mut line = Line::new(cmd, &cmd.name.text);
+            line.word(&instead(&cmd.args[0], id.as_str()));
+            line.done()
+        };
+        Some(std::iter::once(cmd.clone()).chain(parts.iter().map(part)).collect())
     }
 
     /// `fix_modify` of what is only in the dialect.

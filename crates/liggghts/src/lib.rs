@@ -20,6 +20,7 @@ mod old;
 mod properties;
 mod reading;
 mod rewrite;
+mod spacing;
 mod walls;
 mod words;
 
@@ -60,6 +61,12 @@ pub struct Translator {
     templates: BTreeMap<String, mixtures::Template>,
     mixtures: BTreeSet<String>,
     surfaces: BTreeMap<String, meshes::Surface>,
+    /// Walls, with the IDs of their further parts.
+    parts: BTreeMap<String, Vec<String>>,
+    /// Computes with local values.
+    local: BTreeSet<String>,
+    /// The deck has a lattice.
+    lattice: bool,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
     /// Words whose lack of effect has been noted.
@@ -104,6 +111,10 @@ impl Translator {
                 self.note_pair(cmd);
                 vec![]
             }
+            "lattice" => {
+                self.lattice = true;
+                vec![]
+            }
             "thermo_style" => {
                 self.lost = false;
                 vec![]
@@ -136,14 +147,16 @@ impl Translator {
                 }
             },
         };
+        // The same words may mean other lengths.
+        let boxed = |line: &Command| spacing::in_box(line).filter(|_| self.lattice);
         Ok(match (lines, before.is_empty()) {
-            (None, true) => Outcome::NotMine,
+            (None, true) => boxed(cmd).map_or(Outcome::NotMine, |line| Outcome::Native(vec![line])),
             (None, false) => {
                 before.push(cmd.clone());
                 Outcome::Native(before)
             }
             (Some(lines), _) => {
-                before.extend(lines);
+                before.extend(lines.into_iter().map(|line| boxed(&line).unwrap_or(line)));
                 Outcome::Native(before)
             }
         })

@@ -25,6 +25,12 @@ impl Line {
         line
     }
 
+    /// Gives the fix or dump another ID.
+    pub fn renamed(&mut self, id: &str) -> &mut Self {
+        self.args[0] = instead(&self.args[0], id);
+        self
+    }
+
     /// Adds words of its own, which stand for what is at `at`.
     pub fn put(&mut self, words: &str, at: Span) -> &mut Self {
         self.args.extend(words.split_whitespace().map(|text| Word::new(text, at)));

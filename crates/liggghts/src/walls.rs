@@ -2,7 +2,7 @@
 
 use crate::Translator;
 use crate::model::{Cohesion, Given, Model, PARTS, Rolling, Tangential, parts, switch, switches};
-use crate::native::Line;
+use crate::native::{Line, instead};
 use crate::reading::{choice, number, rounded, unknown};
 use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command, Word, blame};
@@ -11,13 +11,18 @@ const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinder", "ycylin
 const KEYWORDS: &[&str] =
     &["primitive", "mesh", "shear", "temperature", "store_force", "store_force_contact"];
 
-/// Where a wall is.
+/// Where a wall is, or the part of it on surfaces of one type.
 struct Place {
     /// The atom type of the wall.
     kind: Word,
     /// Native words.
     words: Vec<Word>,
     on_mesh: bool,
+}
+
+/// The ID of the part of a wall that leans on surfaces of another type than its first one.
+fn part_of(id: &str, kind: &Word) -> String {
+    format!("{id}_type{}", kind.text)
 }
 
 /// Whether a `fix wall/gran` line has LIGGGHTS' words.
@@ -35,8 +40,8 @@ impl Translator {
         }
         let mut given = parts(args, &cmd.args[2])?;
         let head = args.expect("`primitive` or `mesh`")?.clone();
-        let place = match head.text.as_str() {
-            "primitive" => self.primitive(args)?,
+        let places = match head.text.as_str() {
+            "primitive" => vec![self.primitive(args)?],
             "mesh" => self.on_meshes(args)?,
             _ => return Err(unknown(&head, "word of a wall", KEYWORDS).into()),
         };
@@ -49,11 +54,28 @@ impl Translator {
             args.next();
             more.extend(self.more(&word, args)?);
         }
-        let style = if place.on_mesh { "wall/mesh" } else { "wall/gran" };
-        let mut line = Line::styled(cmd, style);
-        self.law_of_wall(&mut line, &given, &place)?;
-        line.words(&place.words).words(&more);
-        Ok(Some(vec![line.done()]))
+        let (mut lines, mut parts) = (vec![], vec![]);
+        for (k, place) in places.iter().enumerate() {
+            let style = if place.on_mesh { "wall/mesh" } else { "wall/gran" };
+            let mut line = Line::styled(cmd, style);
+            if k > 0 {
+                let id = part_of(&cmd.args[0].text, &place.kind);
+                line.renamed(&id);
+                parts.push(id);
+            }
+            self.law_of_wall(&mut line, &given, place)?;
+            line.words(&place.words).words(&more);
+            lines.push(line.done());
+        }
+        // The same ID again takes the place of all parts.
+        let id = &cmd.args[0];
+        let before = self.parts.insert(id.text.clone(), parts.clone()).unwrap_or_default();
+        for part in before.iter().filter(|part| !parts.contains(part)) {
+            let mut line = Line::new(cmd, "unfix");
+            line.word(&instead(id, part.as_str()));
+            lines.push(line.done());
+        }
+        Ok(Some(lines))
     }
 
     /// `primitive type T zplane Z`.
@@ -76,25 +98,22 @@ impl Translator {
         Ok(Place { kind, words, on_mesh: false })
     }
 
-    /// `mesh n_meshes N meshes ID …`.
-    fn on_meshes(&mut self, args: &mut Args) -> Result<Place> {
+    /// `mesh n_meshes N meshes ID …`: one part for each type of surfaces.
+    fn on_meshes(&mut self, args: &mut Args) -> Result<Vec<Place>> {
         choice(args, "word of a wall on meshes", &["n_meshes"])?;
         let count = args.integer_from(1, "the number of meshes")?;
         let head = args.peek().map_or(args.here(), |w| w.span);
         choice(args, "word of a wall on meshes", &["meshes"])?;
-        let mut words = vec![Word::new("of", head)];
-        let mut kinds: Vec<Word> = vec![];
+        let mut places: Vec<Place> = vec![];
         for _ in 0..count {
             let word = args.expect("the ID of a fix mesh/surface")?.clone();
-            kinds.push(self.surface_of(&word)?.kind.clone());
-            words.push(word);
+            let kind = self.surface_of(&word)?.kind.clone();
+            match places.iter_mut().find(|place| place.kind.text == kind.text) {
+                Some(place) => place.words.push(word),
+                None => places.push(Place { kind, words: vec![Word::new("of", head), word], on_mesh: true }),
+            }
         }
-        if let Some(k) = kinds.iter().position(|kind| kind.text != kinds[0].text) {
-            let text = format!("surface `{}` has another type than `{}`", words[k + 1].text, words[1].text);
-            let d = Diagnostic::error(Code::NO_COUNTERPART, words[k + 1].span, text);
-            return Err(d.help("write one `fix wall/gran` for the surfaces of each type").into());
-        }
-        Ok(Place { kind: kinds.swap_remove(0), words, on_mesh: true })
+        Ok(places)
     }
 
     /// What may follow the place of a wall.
@@ -161,7 +180,7 @@ impl Translator {
     /// A wall with a law of its own, in a deck of one atom type.
     fn own_law(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let alone = self.types() == 1 && place.kind.text == "1";
-        if !alone || place.on_mesh {
+        if !alone {
             let reader = &given.reader;
             let text = "the model of this wall has what the model of `pair_style` does not have";
             let d = blame(reader, Code::NO_COUNTERPART, text);
@@ -186,4 +205,23 @@ fn fits(wall: &Model, pair: &Model) -> bool {
         wall.cohesion == Cohesion::Off || (wall.cohesion == pair.cohesion && wall.reduce == pair.reduce);
     let normal = wall.normal == pair.normal && wall.limit == pair.limit && wall.absolute == pair.absolute;
     normal && tangential && rolling && cohesion
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::behind;
+
+    #[test]
+    fn surfaces_of_several_types_are_parts_of_one_wall() {
+        let surfaces = "pair_style gran model hertz\nfix a all mesh/surface file a.stl type 1\nfix b all mesh/surface file b.stl type 2\n\
+                        fix c all mesh/surface file c.stl type 1\n";
+        let wall = "fix w all wall/gran model hertz mesh n_meshes 3 meshes a b c";
+        let found = behind(&format!("{surfaces}{wall}\nunfix w\n"));
+        let parts = ["fix w all wall/mesh coeff 1 of a c", "fix w_type2 all wall/mesh coeff 2 of b"];
+        assert_eq!(found[4..6], parts);
+        assert_eq!(found[6..], ["unfix w", "unfix w_type2"]);
+        let again = wall.replace("3 meshes a b c", "2 meshes a c");
+        let found = behind(&format!("{surfaces}{wall}\n{again}\nunfix w\n"));
+        assert_eq!(found[6..], [parts[0], "unfix w_type2", "unfix w"]);
+    }
 }

@@ -145,12 +145,7 @@ pub(crate) const TABLE: &[Entry] = &[
     entry("fix", "massflow/mesh", false, Take::Lines(|t, cmd, args| t.mass_flow(cmd, args))),
     entry("fix", "wall/gran", false, Take::Lines(|t, cmd, args| t.wall(cmd, args))),
     entry("fix", "pour", false, Take::Lines(|_, cmd, args| old::pour(cmd, args))),
-    entry(
-        "fix",
-        "check/timestep/gran",
-        true,
-        Take::Lines(|_, cmd, args| Ok(Some(computes::time_step(cmd, args)))),
-    ),
+    entry("fix", "check/timestep/gran", true, Take::Lines(|t, cmd, args| t.time_step(cmd, args).map(Some))),
     entry(
         "fix",
         "multisphere*",
@@ -200,6 +195,8 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Refused("grains of several spheres", "`molecule` and `fix rigid/small`"),
     ),
     entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
+    entry("compute", "property/local", false, Take::Lines(|t, cmd, _| Ok(t.local_values(cmd)))),
+    entry("compute", "reduce", false, Take::Lines(|t, cmd, _| Ok(t.reduced(cmd)))),
     entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
     entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
     entry(
