@@ -1,5 +1,6 @@
 //! Decks of LIGGGHTS: numbers of LIGGGHTS 3.8.0, its tutorials where they are installed, and the dialect itself.
 
+mod bits;
 mod clumps;
 mod dialect;
 mod golden;

@@ -147,6 +147,26 @@ fn sources_of_heat_add_up() {
     assert!(temperatures.clone().any(|t| t > 305.0) && temperatures.clone().any(|t| t < 295.0));
 }
 
+/// Spheres of hydrogel that a piston presses together: no random numbers, so that forces on its surface are those of LIGGGHTS 3.8.0.
+#[test]
+fn a_piston_feels_the_force_of_the_real_one() {
+    let Some(there) = copy("hydrogel_multicontact") else { return };
+    let file = there.path().join("in.hydrogel_default");
+    let deck = fs::read_to_string(&file).unwrap();
+    // Down to the deepest place, without files for pictures.
+    let first = deck.split("# relax piston").next().unwrap();
+    let lines = first.lines().filter(|line| !line.starts_with("dump"));
+    fs::write(&file, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+    let text = printed(&perigrain(there.path(), &["-in", "in.hydrogel_default", "-log", "none"]));
+    let found = fs::read_to_string(there.path().join("post/piston_force_default.txt")).expect(&text);
+    let rows: Vec<Vec<f64>> = found.lines().filter_map(super::reading::numbers).collect();
+    for (step, force) in [(6100.0, 0.272146), (12100.0, 1.14743), (18100.0, 2.66962), (24100.0, 4.64251)] {
+        let row = rows.iter().find(|row| row[0] == step).expect("the step");
+        // Six printed digits; what is left of two programs' rounding grows with the number of contacts.
+        assert!((row[3] / force - 1.0).abs() < 1e-5, "{row:?} instead of {force}");
+    }
+}
+
 /// Rows of the step table.
 fn table(text: &str) -> Vec<&str> {
     text.lines().filter(|l| super::reading::numbers(l).is_some_and(|row| row.len() > 3)).collect()

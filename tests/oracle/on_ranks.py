@@ -29,8 +29,11 @@ def lines(said):
 
 def differs(deck, perigrain, ranks):
     """None, or what is not the same on one process and on several ranks."""
+    files = getattr(deck, "files", {})
     deck = deck.cut if isinstance(deck, Cut) else deck
     with tempfile.TemporaryDirectory() as top:
+        for folder in ("one", "several"):
+            write(files, f"{top}/{folder}")
         with open(f"{top}/ours.in", "w") as file:
             file.write("\n".join(deck) + "\n")
         words = [perigrain, "-threads", "1", "-log", "none", f"{top}/ours.in"]
@@ -43,6 +46,14 @@ def differs(deck, perigrain, ranks):
         return f"{len(lines(one))} and {len(lines(several))} lines"
     odd = [name for name in sorted(files_of_one.keys() | files_of_several.keys()) if files_of_one.get(name) != files_of_several.get(name)]
     return f"files {' '.join(odd)}" if odd else None
+
+
+def write(files, folder):
+    """The files that a deck reads."""
+    os.makedirs(folder)
+    for name, text in files.items():
+        with open(os.path.join(folder, name), "w") as out:
+            out.write(text)
 
 
 def with_many(deck):

@@ -1,7 +1,7 @@
 //! fix dt/grain: compares the time step with the Rayleigh and Hertz times of grains.
 
 use super::{Facts, Fix, FixStyle, needs_spheres};
-use perigrain_base::diag::{Code, Diagnostic, Result, Span};
+use perigrain_base::diag::{Code, Diagnostic, Result, Span, fail};
 use perigrain_base::math::vec3::length;
 use perigrain_lang::Args;
 use perigrain_plan::{Needs, Op, Stage, Tick, When};
@@ -9,7 +9,7 @@ use perigrain_styles::common::about;
 use perigrain_styles::matter::publish;
 use perigrain_styles::mesh_surface::{MeshSurface, SURFACES};
 use perigrain_styles::step_op::StepOp;
-use perigrain_styles::words::{Syntax, Words, read};
+use perigrain_styles::words::{Each, OneType, Syntax, Words, read};
 use perigrain_styles::{BuildCx, Doc, SealCx, Shape, Style};
 use perigrain_world::adapted::Coefficient;
 use perigrain_world::field::{FACTS, KIND, MASK, MASS, MEMO, RADIUS, SLOTS, V};
@@ -30,9 +30,9 @@ impl Style for DtGrain {
             summary: "Compares the time step with the Rayleigh and Hertz times of grains, and warns where it is too long.",
             text: "Not in LAMMPS. The Rayleigh time of a grain is π r √(ρ/G)/(0.1631 ν + 0.8766); the Hertz time, that of an impact with a \
                    grain like it, 2.87 (m²/(R̄ E*² v))^(1/5), where m is its whole mass, R̄ = r/2, 1/E* = 2 (1 − ν²)/E, and v the \
-                   largest speed of a grain plus that speed or the fastest surface's, whichever is larger. The smallest of each over the \
-                   group's grains counts. E and ν are those of `pair_coeff` of the grain's type: the style needs a normal model with \
-                   a material.\n\n\
+                   largest speed of a grain plus that speed or that of the fastest surface that moves, whichever is larger. The smallest of each over the \
+                   group's grains counts. E and ν are those of `pair_coeff` of the grain's type, or those behind `material` where \
+                   that law has none.\n\n\
                    Every N steps: where the step is a larger part of them than fr or fh, or grains move by more than the skin in a \
                    step, a warning at the end of the run states the worst of it, or an error ends the run. Vector (intensive): Δt over the \
                    Rayleigh time, Δt over the Hertz time, v Δt over the skin; 0 in the setup of a first run. It is for decks whose step was \
@@ -63,14 +63,33 @@ struct Line {
     /// Whether a step that is too long ends the run.
     #[word(keyword, default = false)]
     error: bool,
+    #[word(flatten)]
+    materials: Each<OfType>,
+}
+
+/// The material of a type.
+#[derive(Words)]
+#[word(keywords)]
+enum OfType {
+    /// Young's modulus [pressure] and Poisson's ratio of the type T, where its law of pairs has none.
+    Material {
+        #[word(name = "T", what = "a type")]
+        kind: OneType,
+        #[word(name = "E", what = "Young's modulus", positive)]
+        young: f64,
+        #[word(name = "nu", what = "Poisson's ratio")]
+        poisson: f64,
+    },
 }
 
 impl FixStyle for DtGrain {
     fn build(&self, args: &mut Args, cx: &BuildCx) -> Result<Box<dyn Fix>> {
         needs_spheres(cx, "dt/grain")?;
-        let Line { every, rayleigh, hertz, vmax, warn, error } = read(args, cx)?;
+        let Line { every, rayleigh, hertz, vmax, warn, error, materials } = read(args, cx)?;
         let limits = [rayleigh, hertz, 1.0];
-        Ok(Box::new(Declared { id: cx.id.to_string(), group: cx.group, every, limits, vmax, warn, error }))
+        let given = by_type(materials, cx.world.types)?;
+        let id = cx.id.to_string();
+        Ok(Box::new(Declared { id, group: cx.group, every, limits, vmax, warn, error, given }))
     }
 }
 
@@ -84,10 +103,28 @@ struct Declared {
     vmax: f64,
     warn: bool,
     error: bool,
+    /// Materials of the line.
+    given: Materials,
 }
 
 /// Young's modulus and Poisson's ratio by type.
 type Materials = Vec<Option<(f64, f64)>>;
+
+/// The materials of a line, of which no type has two.
+fn by_type(all: Each<OfType>, types: usize) -> Result<Materials> {
+    let mut out = vec![None; types];
+    for given in all.0 {
+        let OfType::Material { kind, young, poisson } = given.value;
+        if !(poisson > -1.0 && poisson <= 0.5) {
+            return fail(Code::BAD_VALUE, given.word.span, "Poisson's ratio is above -1 and at most 0.5");
+        }
+        if out[usize::from(kind.0) - 1].replace((young, poisson)).is_some() {
+            let text = format!("type {} has two materials", kind.0);
+            return fail(Code::CONFLICT, given.word.span, &text);
+        }
+    }
+    Ok(out)
+}
 
 impl Declared {
     /// The step over the Rayleigh time and over the Hertz time, and the way in a step over the skin; `fastest` is the speed of the
@@ -105,7 +142,7 @@ impl Declared {
                 let text = format!("fix dt/grain needs Young's modulus and Poisson's ratio of type {kind}");
                 let d = Diagnostic::error(Code::INCOMPLETE, span, text);
                 return Err(d
-                    .help(format!("write `pair_coeff {kind} {kind} hertz/material E e nu …`, or leave the type out of the group"))
+                    .help(format!("write `pair_coeff {kind} {kind} hertz/material E e nu …`, `material` behind the line, or leave the type out of the group"))
                     .into());
             };
             let (r, m) = (p.radius[i], p.mass[i]);
@@ -145,7 +182,9 @@ impl Fix for Declared {
     fn ops(&self, cx: &mut dyn SealCx) -> Result<Vec<Box<dyn Op>>> {
         let span = cx.span();
         let types = cx.world().types as u16;
-        let materials: Materials = (1..=types).map(|kind| material(kind, cx)).collect();
+        let of_line = |kind: u16| self.given.get(usize::from(kind) - 1).copied().flatten();
+        let materials: Materials =
+            (1..=types).map(|kind| of_line(kind).or_else(|| material(kind, cx))).collect();
         let slot = cx.slot(&format!("f_{}", self.id));
         cx.world().slots.get_mut(slot).vector.resize(3, 0.0);
         let all = cx.world().facts.get(*SURFACES);
@@ -211,6 +250,7 @@ mod tests {
             vmax: 0.0,
             warn: true,
             error: false,
+            given: vec![],
         };
         fix.parts(&b.world, &vec![Some((5e6, 0.45))], fastest, 1e-5, Span::default()).unwrap()
     }
@@ -231,7 +271,17 @@ mod tests {
     #[test]
     fn what_is_too_long_is_named() {
         let fix = |words: &str| scene(0.01, 0.0).fix(&DtGrain, words).map(|_| ());
-        for words in ["", "0 0.1 0.1", "1 0 0.1", "1 0.1", "1 0.1 0.1 vmax -1", "1 0.1 0.1 warn maybe"] {
+        for words in [
+            "",
+            "0 0.1 0.1",
+            "1 0 0.1",
+            "1 0.1",
+            "1 0.1 0.1 vmax -1",
+            "1 0.1 0.1 warn maybe",
+            "1 0.1 0.1 material 1 5e6",
+            "1 0.1 0.1 material 2 5e6 0.45",
+            "1 0.1 0.1 material 1 5e6 0.6",
+        ] {
             assert!(fix(words).is_err(), "{words}");
         }
         let fix = Declared {
@@ -242,6 +292,7 @@ mod tests {
             vmax: 0.0,
             warn: true,
             error: false,
+            given: vec![],
         };
         assert_eq!(fix.judge([0.1, 0.2, 1.0]), None);
         let text = fix.judge([0.11, 0.2, 1.5]).unwrap();

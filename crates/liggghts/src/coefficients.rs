@@ -99,7 +99,9 @@ impl Translator {
             line.put(name, given.cohesion).word(&self.of("cohesionEnergyDensity", reader, i, j)?);
             line.put(if model.reduce { "reduce" } else { "" }, given.cohesion);
         }
-        line.put(if model.limit { "limit_damping" } else { "" }, given.normal);
+        // LIGGGHTS has no limit where grains stick in this way (measured).
+        let limit = model.limit && model.normal != Normal::Hysteresis;
+        line.put(if limit { "limit_damping" } else { "" }, given.normal);
         if warm {
             self.conduction(line, model, i, j)?;
         }
@@ -186,8 +188,26 @@ impl Translator {
         };
         line.put(name, at).word(&kn).word(&normal).put(&format!("damping {damping}"), at);
         let kind = if model.is_hertz() { "mindlin" } else { "linear_history" };
+        if model.rolling == Rolling::Epsd2 && model.tangential != Tangential::History {
+            return rolls_on(line, given, kind, &kt);
+        }
         self.friction(line, given, &format!("{kind} {}", kt.text), &ratio, (i, j))
     }
+}
+
+/// `epsd2` takes its stiffness from kt (measured), also where no friction acts: a spring that slides without force has it.
+fn rolls_on(line: &mut Line, given: &Given, kind: &str, kt: &Word) -> Result<()> {
+    let at = given.tangential;
+    if given.model.tangential == Tangential::Off {
+        line.put(&format!("tangential {kind} {} 0 0 slip spring", kt.text), at);
+        return Ok(());
+    }
+    let d = Diagnostic::error(
+        Code::NO_COUNTERPART,
+        at,
+        "`no_history` has no spring for `rolling_friction epsd2`",
+    );
+    Err(d.help("take `tangential history`, or `rolling_friction epsd`").into())
 }
 
 /// The damping along the normal, and the ratio of that across it to it.
@@ -200,5 +220,37 @@ fn ratio(normal: &Word, across: &Word) -> (Word, String) {
         }
         (Some(a), Some(b)) => (normal.clone(), format!("{}", b / a)),
         _ => (normal.clone(), format!("$({}/{})", inside(across), inside(normal))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::{behind, coefficients, wrong};
+
+    const SPRINGS: &str = "fix r all property/global coefficientRollingFriction peratomtypepair 1 0.1\n\
+        fix s1 all property/global kn peratomtypepair 1 2000.\nfix s2 all property/global kt peratomtypepair 1 1000.\n\
+        fix s3 all property/global gamman peratomtypepair 1 50.\nfix s4 all property/global gammat peratomtypepair 1 20.\n";
+
+    #[test]
+    fn rolling_springs_have_the_stiffness_kt_also_without_friction() {
+        let line = coefficients("model hertz/stiffness tangential off rolling_friction epsd2", SPRINGS);
+        assert!(line.contains("tangential mindlin 1000. 0 0 slip spring rolling epsd2 0.1"), "{line}");
+        let line = coefficients("model hooke/stiffness tangential no_history", SPRINGS);
+        assert!(line.contains("tangential linear_nohistory 0.4 0.5 slip spring"), "{line}");
+        let d = wrong(&format!(
+            "{SPRINGS}pair_style gran model hooke/stiffness tangential no_history rolling_friction epsd2\nrun 1\n"
+        ));
+        assert!(d.has_errors() && d.to_string().contains("has no spring"), "{d}");
+    }
+
+    #[test]
+    fn materials_of_springs_stand_in_the_check_of_the_time_step() {
+        let lines = behind(&format!(
+            "{SPRINGS}pair_style gran model hooke/stiffness\nfix ts all check/timestep/gran 100 0.1 0.1\n"
+        ));
+        assert_eq!(lines[1], "fix ts all dt/grain 100 0.1 0.1 material 1 5.e6 0.45");
+        let sums = "compute pl all pair/gran/local delta\ncompute s all reduce sum c_pl\ncompute t all reduce sum vx\n";
+        let lines = behind(&format!("pair_style gran\n{sums}"));
+        assert_eq!(lines[2..], ["compute s all reduce sum c_pl inputs local", "compute t all reduce sum vx"]);
     }
 }

@@ -1,18 +1,30 @@
 //! Small words of LIGGGHTS: the check of the time step, `set`.
 
+use crate::Translator;
 use crate::native::Line;
 use crate::reading::{rounded, without_counterpart};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command, Word};
 
-/// `fix ID group check/timestep/gran N fr fh …`.
-pub(crate) fn time_step(cmd: &Command, args: &mut Args) -> Vec<Command> {
-    let mut line = Line::styled(cmd, "dt/grain");
-    let words: Vec<Word> = args.rest().to_vec();
-    if let Some((first, rest)) = words.split_first() {
-        line.word(&rounded(first).0).words(rest);
+impl Translator {
+    /// `fix ID group check/timestep/gran N fr fh …`. Where coefficients of pairs are springs, the materials of the types stand here.
+    pub(crate) fn time_step(&mut self, cmd: &Command, args: &mut Args) -> Result<Vec<Command>> {
+        let mut line = Line::styled(cmd, "dt/grain");
+        let words: Vec<Word> = args.rest().to_vec();
+        if let Some((first, rest)) = words.split_first() {
+            line.word(&rounded(first).0).words(rest);
+        }
+        if self.pair.as_ref().is_some_and(|(_, given)| given.model.is_stiffness()) {
+            let reader = cmd.args[2].clone();
+            for i in 0..self.types().max(1) {
+                line.put(&format!("material {}", i + 1), reader.span);
+                for name in ["youngsModulus", "poissonsRatio"] {
+                    line.word(&self.of(name, &reader, i, i)?);
+                }
+            }
+        }
+        Ok(vec![line.done()])
     }
-    vec![line.done()]
 }
 
 /// Keywords of `set` that have no counterpart, with what they are about and what to take instead.

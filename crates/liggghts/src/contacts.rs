@@ -33,7 +33,8 @@ const STRESSES: &[&str] = &["ke", "pair", "bond", "angle", "dihedral", "improper
 
 impl Translator {
     /// `compute ID group pair/gran/local [keywords]`.
-    pub(crate) fn contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+    pub(crate) fn contacts(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+        self.local_values(cmd);
         let mut line = Line::styled(cmd, "pair/local");
         self.columns(&mut line, cmd, args, |(_, pair, _, _)| pair)?;
         line.put("cutoff radius", cmd.span);
@@ -41,7 +42,7 @@ impl Translator {
     }
 
     /// `compute ID group wall/gran/local [keywords]`: of the wall on surfaces, which stands above.
-    pub(crate) fn wall_contacts(&self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
+    pub(crate) fn wall_contacts(&mut self, cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
         let Some(wall) = &self.mesh_wall else {
             let text = "`wall/gran/local` needs a `fix wall/gran … mesh` above it";
             let d = Diagnostic::error(Code::INCOMPLETE, cmd.args[2].span, text);
@@ -51,6 +52,7 @@ impl Translator {
         };
         let mut line = Line::styled(cmd, "wall/local");
         line.word(&instead(&cmd.args[2], wall.text.as_str()));
+        self.local_values(cmd);
         self.columns(&mut line, cmd, args, |(_, _, wall, _)| wall)?;
         Ok(Some(vec![line.done()]))
     }
@@ -87,6 +89,27 @@ impl Translator {
             }
         }
         Ok(())
+    }
+
+    /// A compute whose values are those of contacts or bonds.
+    pub(crate) fn local_values(&mut self, cmd: &Command) -> Option<Vec<Command>> {
+        self.local.insert(cmd.args.first()?.text.clone());
+        None
+    }
+
+    /// `compute ID group reduce MODE inputs`: native lines have a word for values of contacts.
+    pub(crate) fn reduced(&self, cmd: &Command) -> Option<Vec<Command>> {
+        let is_local = |text: &str| {
+            let id = text.strip_prefix("c_").and_then(|t| t.split('[').next());
+            id.is_some_and(|id| self.local.contains(id))
+        };
+        let input = cmd.args.iter().find(|w| is_local(&w.text))?;
+        if cmd.args.iter().any(|w| w.text == "inputs") {
+            return None;
+        }
+        let mut line = Line::new(cmd, &cmd.name.text);
+        line.words(&cmd.args).put("inputs local", input.span);
+        Some(vec![line.done()])
     }
 
     /// How many numbers a contact remembers: the tangential spring, the torque of a rolling spring.

@@ -26,6 +26,7 @@ mod properties;
 mod reading;
 mod regions;
 mod rewrite;
+mod spacing;
 mod walls;
 mod words;
 
@@ -82,6 +83,10 @@ pub struct Translator {
     early: Vec<model::Given>,
     /// The wall on surfaces, of which LIGGGHTS has one.
     mesh_wall: Option<Word>,
+    /// Computes with local values.
+    local: BTreeSet<String>,
+    /// The deck has a lattice.
+    lattice: bool,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
     /// IDs of fixes whose bins are a compute of their own here.
@@ -146,6 +151,10 @@ impl Translator {
                 self.note_pair(cmd);
                 vec![]
             }
+            "lattice" => {
+                self.lattice = true;
+                vec![]
+            }
             "thermo_style" => {
                 self.lost = false;
                 vec![]
@@ -180,14 +189,16 @@ impl Translator {
                 }
             },
         };
+        // The same words may mean other lengths.
+        let boxed = |line: &Command| spacing::in_box(line).filter(|_| self.lattice);
         Ok(match (lines, before.is_empty()) {
-            (None, true) => Outcome::NotMine,
+            (None, true) => boxed(cmd).map_or(Outcome::NotMine, |line| Outcome::Native(vec![line])),
             (None, false) => {
                 before.push(cmd.clone());
                 Outcome::Native(before)
             }
             (Some(lines), _) => {
-                before.extend(lines);
+                before.extend(lines.into_iter().map(|line| boxed(&line).unwrap_or(line)));
                 Outcome::Native(before)
             }
         })

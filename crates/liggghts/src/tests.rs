@@ -25,17 +25,17 @@ fn native(deck: &str) -> Vec<String> {
 }
 
 /// The native lines of a deck behind the material.
-fn behind(lines: &str) -> Vec<String> {
+pub(crate) fn behind(lines: &str) -> Vec<String> {
     native(&format!("{MATERIAL}{lines}"))[1..].to_vec()
 }
 
 /// The problems of lines behind the material.
-fn wrong(lines: &str) -> Diagnostics {
+pub(crate) fn wrong(lines: &str) -> Diagnostics {
     rewrite(&format!("{MATERIAL}{lines}"), FileId(0), Target::Perigrain).problems
 }
 
 /// The one `pair_coeff` line of a model, with more properties.
-fn coefficients(model: &str, more: &str) -> String {
+pub(crate) fn coefficients(model: &str, more: &str) -> String {
     let lines = behind(&format!("{more}pair_style gran {model}\npair_coeff * *\nrun 1\n"));
     assert_eq!((lines[0].as_str(), lines[2].as_str()), ("pair_style granular", "run 1"));
     lines[1].clone()

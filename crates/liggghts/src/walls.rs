@@ -12,7 +12,7 @@ pub(crate) const PRIMITIVES: &[&str] = &["xplane", "yplane", "zplane", "xcylinde
 const KEYWORDS: &[&str] =
     &["primitive", "mesh", "shear", "temperature", "store_force", "store_force_contact"];
 
-/// Where a wall is.
+/// Where a wall is, or the part of it on surfaces of one type.
 struct Place {
     /// The atom type of the wall.
     kind: Word,
@@ -187,7 +187,7 @@ impl Translator {
     /// A wall with a law of its own, in a deck of one atom type.
     fn own_law(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let alone = self.types() == 1 && place.kind.text == "1";
-        if !alone || place.on_mesh {
+        if !alone {
             let reader = &given.reader;
             let text = "the model of this wall has what the model of `pair_style` does not have";
             let d = blame(reader, Code::NO_COUNTERPART, text);

@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, averages, clumps, computes, contacts, dumps, idle, old, regions};
+use crate::{Translator, averages, clumps, contacts, dumps, idle, old, regions};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -142,12 +142,7 @@ pub(crate) const TABLE: &[Entry] = &[
     entry("fix", "massflow/mesh", false, Take::Lines(|t, cmd, args| t.mass_flow(cmd, args))),
     entry("fix", "wall/gran", false, Take::Lines(|t, cmd, args| t.wall(cmd, args))),
     entry("fix", "pour", false, Take::Lines(|_, cmd, args| old::pour(cmd, args))),
-    entry(
-        "fix",
-        "check/timestep/gran",
-        true,
-        Take::Lines(|_, cmd, args| Ok(Some(computes::time_step(cmd, args)))),
-    ),
+    entry("fix", "check/timestep/gran", true, Take::Lines(|t, cmd, args| t.time_step(cmd, args).map(Some))),
     entry("fix", "multisphere", true, Take::Lines(|t, cmd, args| t.multisphere(cmd, args).map(Some))),
     entry(
         "fix",
@@ -324,6 +319,8 @@ pub(crate) const TABLE: &[Entry] = &[
         Take::Lines(|_, cmd, _| Ok(Some(contacts::renamed(cmd, "contact/atom")))),
     ),
     entry("compute", "pair/gran/local", false, Take::Lines(|t, cmd, args| t.contacts(cmd, args))),
+    entry("compute", "property/local", false, Take::Lines(|t, cmd, _| Ok(t.local_values(cmd)))),
+    entry("compute", "reduce", false, Take::Lines(|t, cmd, _| Ok(t.reduced(cmd)))),
     entry("compute", "erotate", false, Take::Lines(|_, cmd, _| Ok(Some(contacts::rotation(cmd))))),
     entry("compute", "stress/atom", false, Take::Lines(|_, cmd, _| Ok(contacts::stress(cmd)))),
     entry("compute", "wall/gran/local", false, Take::Lines(|t, cmd, args| t.wall_contacts(cmd, args))),

@@ -88,13 +88,11 @@ impl MeshSurface {
         (0..3).fold([0.0; 3], |sum, k| add(sum, scale(weights[k], corners[k])))
     }
 
-    /// The fastest speed of its points [length/time].
+    /// The fastest speed with which its points move [length/time]; a speed along the surface moves none.
     pub fn speed(&self, w: &World) -> f64 {
         let pose = self.pose(w);
-        let own = self.slide.as_deref().unwrap_or(&[]).as_flattened();
-        let own = own.iter().map(|v| length(*v)).fold(0.0, f64::max);
         let moving = self.corners().into_iter().map(|c| length(pose.velocity_at(pose.at(c))));
-        own + moving.fold(0.0, f64::max)
+        moving.fold(0.0, f64::max)
     }
 
     /// The corners of the box around its triangles, in its own frame; none of a surface without triangles.

@@ -98,9 +98,12 @@ impl Grains<'_> {
         let distance = length(d);
         let (radii, masses) = ([self.radius[i], self.radius[j]], [self.mass[i], self.mass[j]]);
         let mut g = Geometry::between(d, distance, radii, masses);
-        if let [true, _] | [_, true] = [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
-            g.mass = if self.frozen[j] { masses[0] } else { masses[1] };
-        }
+        // Of two frozen grains the one with the smaller tag counts.
+        g.mass = match [i, j].map(|k| self.frozen.get(k) == Some(&true)) {
+            [false, false] => g.mass,
+            [true, true] => masses[usize::from(self.tag[i] > self.tag[j])],
+            [_, of_j] => masses[usize::from(!of_j)],
+        };
         if rule.curvature == Curvature::Impactor {
             g = match [p.i, p.j].map(|k| self.body(k) == NO_BODY) {
                 [true, false] => g.with_curvature(g.radii[0]),

@@ -229,7 +229,7 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let mass = match (self.mass, cx.frozen) {
                 (Some(mass), false) => mass,
                 (None, false) => reduced(V::pick(m, i), V::pick(m, j)),
-                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, j), mass),
+                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, j), self.sides(cx, N * group), mass),
             };
             let g = geometry([x, y, z], &sizes, mass);
             self.geometry.put(group, g);
@@ -299,6 +299,21 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
                 store_rows(past, part, four);
             }
         }
+    }
+
+    /// 1 where the first grain has the smaller tag, −1 where the second one has it.
+    ///
+    /// # Safety
+    /// There must be such contacts, whose entries are grains.
+    #[inline(never)]
+    unsafe fn sides(&self, cx: &Cx, at: usize) -> V {
+        let mut side = [0.0; N];
+        for lane in 0..N {
+            let [i, j] = [self.i[at + lane], self.j[at + lane]].map(|k| k as usize);
+            side[lane] = if cx.tag[i] <= cx.tag[j] { 1.0 } else { -1.0 };
+        }
+        // SAFETY: the caller's guarantee.
+        unsafe { V::of(side) }
     }
 
     /// The sides of some contacts; not inlined, so that laws without torques in their history do not pay for it.

@@ -16,7 +16,7 @@ use perigrain_world::{Key, Numbers, Outline, World};
 ///
 /// With p the force (or torque) with which the wall presses along the axis and the wanted value F, e = (F − p)/|F|: the
 /// wall moves along the axis at v = `vel_max` clamp(kp e + ki ∫ e dt + kd de/dt, ±1). Source: LIGGGHTS manual, fix
-/// mesh/surface/stress/servo; order in a step, the resting integral and `auto` measured with LIGGGHTS 3.8.0.
+/// mesh/surface/stress/servo; order in a step, the integral at the limit and `auto` measured with LIGGGHTS 3.8.0.
 #[derive(Clone, Words)]
 pub struct Line {
     /// The point about which a torque counts and the surface turns; it moves with the wall [length].
@@ -36,7 +36,7 @@ pub struct Line {
     /// The gain of the error.
     #[word(keyword, name = "gain", default = 0.01)]
     kp: f64,
-    /// The gain of its integral, which rests while the speed is at its limit [1/time].
+    /// The gain of its integral, which does not wind up: beyond the limit of the speed it is the one that gives the limit [1/time].
     #[word(keyword, name = "gain", default = 0.0)]
     ki: f64,
     /// The gain of its rate [time].
@@ -322,14 +322,14 @@ impl Running {
         Ok([before, now])
     }
 
-    /// The speed by the three gains; the integral rests while the speed is at its limit.
+    /// The speed by the three gains. Where it is beyond its limit, the integral becomes the one that gives the limit with the error alone
+    /// (measured with LIGGGHTS 3.8.0): it does not wind up.
     fn by_gains(&self, before: &State, now: &mut State, dt: f64) -> f64 {
         let [kp, ki, kd] = self.servo.gains;
         let integral = before.integral + now.error * dt;
         let part = kp * now.error + ki * integral + kd * (now.error - before.error) / dt;
-        if part.abs() < 1.0 {
-            now.integral = integral;
-        }
+        let limited = part.abs() > 1.0 && ki != 0.0;
+        now.integral = if limited { (part.signum() - kp * now.error) / ki } else { integral };
         self.servo.vel_max * part.clamp(-1.0, 1.0)
     }
 

@@ -48,13 +48,16 @@ pub(super) fn reduced<R: Real>(mi: R, mj: R) -> R {
 }
 
 /// The reduced mass, where frozen grains have negative mass and count as infinitely heavy; `free`: the
-/// reduced mass of two grains that are not frozen, if known.
+/// reduced mass of two grains that are not frozen, if known. Of two frozen grains the one with the smaller tag counts, the first
+/// where `side` is positive.
 #[inline(always)]
-pub(super) fn beside_frozen<R: Real>(mi: R, mj: R, free: Option<R>) -> R {
+pub(super) fn beside_frozen<R: Real>(mi: R, mj: R, side: R, free: Option<R>) -> R {
     let (zero, a, b) = (mi.like(0.0), mi.abs(), mj.abs());
     let free = match free {
         Some(mass) => mass,
         None => reduced(a, b),
     };
-    R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free))
+    let both = R::both(zero.above(mi), zero.above(mj));
+    let one = R::choose(zero.above(mj), a, R::choose(zero.above(mi), b, free));
+    R::choose(both, R::choose(side.above(zero), a, b), one)
 }
