@@ -260,7 +260,7 @@ mod tests {
             ("clump c 3 spheres 0 0 0 1 1 0 0 1", "3"),
             ("clump c 1 balls 0 0 0 1 1 0 0 1", "balls"),
             ("clump c 1 spheres 0 0 0 1 1 0 0 -1", "-1"),
-            ("clump c 1 spheres 0 0 0 1 1 0 0 1 2", "clump"),
+            ("clump c 1 spheres 0 0 0 1 1 0 0 1 2", "2"),
         ] {
             let (blame, text) = refused(&w, line);
             assert!(blame == word || blame.starts_with("clump"), "{line}: {blame}: {text}");
@@ -285,7 +285,7 @@ mod tests {
         let w = scene(&format!("{SPHERES}clump c 1 file {file} count 2"));
         assert_eq!(w.templates["c"][0].radii, [1.0, 0.5]);
         let w = scene(SPHERES);
-        assert_eq!(refused(&w, &format!("clump c 1 file {file} count 3")).0, "3");
+        assert_eq!(refused(&w, &format!("clump c 1 file {file} count 3")).0, "count");
         write("0 0 0 1\n1 0 0\n");
         assert!(refused(&w, &format!("clump c 1 file {file}")).1.contains("line 2"));
         write("0 0 0 1\n");
