@@ -199,10 +199,11 @@ compute t all property/atom temperature
 compute sum all reduce sum c_t
 compute hi all reduce max c_t
 compute lo all reduce min c_t
+compute sq all reduce sumsq c_t
 compute p all property/atom d_power
 compute watts all reduce sum c_p
 thermo 1000
-thermo_style custom step atoms c_sum f_flow c_hi c_lo c_watts ke time
+thermo_style custom step atoms c_sum f_flow c_hi c_lo c_watts c_sq time
 thermo_modify format float %23.17g
 RUN
 ";
@@ -217,18 +218,20 @@ const BEGIN: &str =
 
 #[test]
 fn grains_that_come_later_have_the_initial_temperature() {
-    let deck = grains(BEGIN, "run 1\nset group all temperature 500\nrun 2999");
+    let deck = grains(BEGIN, "run 1\nset group all temperature 500\nrun 7999");
     let row = last_row(&deck, &["-threads", "1"]);
     // 40 grains at 500 K and as many as there are more at 300 K; walls without a temperature take no heat.
-    let (atoms, capacity) = (row[1], 4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2500.0 * 10.0);
-    assert!(atoms > 45.0, "{row:?}");
-    let heat = capacity * (40.0 * 500.0 + (atoms - 40.0) * 300.0);
-    // Sums of 3,000 steps.
+    let (more, capacity) = (row[1] - 40.0, 4.0 / 3.0 * std::f64::consts::PI * 8e-9 * 2500.0 * 10.0);
+    assert!(more > 20.0, "{row:?}");
+    let heat = capacity * (40.0 * 500.0 + more * 300.0);
+    // Sums of 8,000 steps.
     assert!(
         (row[3] / heat - 1.0).abs() < 1e-11 && (row[2] * capacity / heat - 1.0).abs() < 1e-11,
         "{row:?} {heat}"
     );
-    assert!(row[4] < 500.0 && row[5] >= 300.0 && row[5] < 320.0, "{row:?}");
+    assert!(row[4] <= 500.0 && row[5] >= 300.0, "{row:?}");
+    // Where hot ones touch cold ones the squares fall.
+    assert!(row[7] < 40.0 * 500.0 * 500.0 + more * 300.0 * 300.0 - 1e3, "{row:?}");
     for threads in ["2", "4"] {
         assert_eq!(row, last_row(&deck, &["-threads", threads]));
     }
@@ -238,8 +241,8 @@ fn grains_that_come_later_have_the_initial_temperature() {
     );
     // Zeros without the word, as LAMMPS has them.
     let zeros = "fix warm all property/atom temperature heatflow d_power";
-    let row = last_row(&grains(zeros, "run 1\nset group all temperature 500\nrun 1999"), &[]);
-    assert_eq!(row[5], 0.0);
+    let row = last_row(&grains(zeros, "run 1\nset group all temperature 500\nrun 2999"), &[]);
+    assert_eq!((row[1] > 40.0, row[5]), (true, 0.0));
 }
 
 #[test]

@@ -33,9 +33,6 @@ tutorials! {
     moving_mesh_gran: "movingMeshGran", "in.movingMeshGran", 1250..=1450;
     conveyor: "conveyor", "in.conveyor", 382..=382;
     chute_wear: "chute_wear", "in.chute_wear", 800..=860;
-    heat_transfer_1: "heatTransfer_1", "in.heatGran", 890..=890;
-    heat_transfer_2: "heatTransfer_2", "in.heatGran", 890..=890;
-    hydrogel_default: "hydrogel_multicontact", "in.hydrogel_default", 1..=100_000;
     mesh_tet: "mesh_tet", "in.mesh_tet", 14583..=14583;
     multisphere: "multisphere_stone_restitution", "in.multisphere", 50..=100;
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
@@ -47,7 +44,6 @@ const REFUSED: &[(&str, &str, &str)] = &[
     ("sph_1", "in.sph_1", "fluids are not in perigrain"),
     ("sph_2", "in.sph_2", "fluids are not in perigrain"),
     ("hydrogel_multicontact", "in.hydrogel_multicontact", "multicontact"),
-    ("ParScale/fluidizedBedTempParScale", "in.liggghts_run", "a coupling to another program"),
 ];
 
 /// A copy of a tutorial in a folder of its own.
@@ -90,13 +86,10 @@ fn runs_to_its_end(name: &str, deck: &str, grains: RangeInclusive<usize>) {
 /// Rows of thermo output, and place and temperature of each grain at the end.
 type Heated = (Vec<Vec<f64>>, Vec<[f64; 2]>);
 
-/// Runs the first steps of a tutorial about heat: it is shortened, and its snapshots are text. Temperatures of the last one, with what x
-/// says.
-fn heated(name: &str, steps: [usize; 2]) -> Option<Heated> {
+/// Runs a tutorial about heat. Rows of its step table, and x and temperature of each grain at the end.
+fn heated(name: &str) -> Option<Heated> {
     let there = copy(name)?;
     let deck = fs::read_to_string(there.path().join("in.heatGran")).unwrap();
-    let deck = deck.replace("20000 upto", &format!("{} upto", steps[0]));
-    let deck = deck.replace("50000 upto", &format!("{} upto", steps[1]));
     let more = "\nwrite_dump all custom last.txt x f_Temp[0] modify format line \"%.12g %.12g\"\n";
     fs::write(there.path().join("in.short"), deck + more).unwrap();
     let text = printed(&perigrain(there.path(), &["-in", "in.short", "-log", "none"]));
@@ -112,13 +105,13 @@ const CAPACITY: f64 = 4.0 / 3.0 * std::f64::consts::PI * 64e-9 * 8000.0 * 10.0;
 
 #[test]
 fn a_hot_half_of_a_bed_warms_the_other() {
-    let Some((rows, grains)) = heated("heatTransfer_1", [20_000, 49_600]) else { return };
+    let Some((rows, grains)) = heated("heatTransfer_1") else { return };
     let hot = grains.len() as f64;
-    assert!((hot - 890.0).abs() < 1.5);
-    // Without heat from outside: 890 grains at 300 K, then some at 800 K.
-    let total = |k: usize| rows[k][4];
-    assert!((total(0) / (hot * CAPACITY * 300.0) - 1.0).abs() < 1e-7, "{:?}", rows[0]);
-    assert!((total(19) / total(0) - 1.0).abs() < 1e-7);
+    // 889.9 grains are 25 % of the region: LIGGGHTS inserts 890.
+    assert!((889.0..=890.0).contains(&hot), "{hot}");
+    // Without heat from outside: all at 300 K, then some at 800 K.
+    let start = hot * CAPACITY * 300.0;
+    assert!((total(&rows, 1.0) / start - 1.0).abs() < 1e-7 && (total(&rows, 2e4) / start - 1.0).abs() < 1e-7);
     let last = rows.last().unwrap()[4];
     let warmed = (last / CAPACITY - hot * 300.0) / 500.0;
     // 445 in LIGGGHTS; half a bed of random places.
@@ -137,27 +130,29 @@ fn a_hot_half_of_a_bed_warms_the_other() {
 
 #[test]
 fn sources_of_heat_add_up() {
-    let Some((rows, grains)) = heated("heatTransfer_2", [20_000, 30_000]) else { return };
-    let [before, last] = [20, rows.len() - 1].map(|k| rows[k][4]);
+    let Some((rows, grains)) = heated("heatTransfer_2") else { return };
+    let (before, last) = (total(&rows, 2e4), total(&rows, 5e4));
     assert!((before / (grains.len() as f64 * CAPACITY * 300.0) - 1.0).abs() < 1e-7);
-    // ±1.5 W for 10,000 steps of 25 µs, in as many grains more on one side than on the other.
-    let more = (last - before) / (1.5 * 10_000.0 * 25e-6);
+    // ±1.5 W for 30,000 steps of 25 µs, in as many grains more on one side than on the other.
+    let more = (last - before) / (1.5 * 30_000.0 * 25e-6);
     assert!((more - more.round()).abs() < 1e-2 && more.abs() < 60.0, "{more}");
-    let temperatures = grains.iter().map(|g| g[1]);
-    assert!(temperatures.clone().any(|t| t > 305.0) && temperatures.clone().any(|t| t < 295.0));
+    // In grains at the ends, which touch few others: 248.25 K and 351.75 K in LIGGGHTS.
+    let [lo, hi] = [f64::min, f64::max].map(|of| grains.iter().map(|g| g[1]).reduce(of).unwrap());
+    assert!((lo - 248.0).abs() < 3.0 && (hi - 352.0).abs() < 3.0, "{lo} {hi}");
+}
+
+/// The heat of all grains, where the step table has this step first.
+fn total(rows: &[Vec<f64>], step: f64) -> f64 {
+    rows.iter().find(|row| row[0] == step && row[1] > 0.0).unwrap()[4]
 }
 
 /// Spheres of hydrogel that a piston presses together: no random numbers, so that forces on its surface are those of LIGGGHTS 3.8.0.
 #[test]
 fn a_piston_feels_the_force_of_the_real_one() {
     let Some(there) = copy("hydrogel_multicontact") else { return };
-    let file = there.path().join("in.hydrogel_default");
-    let deck = fs::read_to_string(&file).unwrap();
-    // Down to the deepest place, without files for pictures.
-    let first = deck.split("# relax piston").next().unwrap();
-    let lines = first.lines().filter(|line| !line.starts_with("dump"));
-    fs::write(&file, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
-    let text = printed(&perigrain(there.path(), &["-in", "in.hydrogel_default", "-log", "none"]));
+    let out = perigrain(there.path(), &["-in", "in.hydrogel_default", "-log", "none"]);
+    let text = printed(&out);
+    assert!(out.status.success(), "{}", &text[text.len().saturating_sub(2000)..]);
     let found = fs::read_to_string(there.path().join("post/piston_force_default.txt")).expect(&text);
     let rows: Vec<Vec<f64>> = found.lines().filter_map(super::reading::numbers).collect();
     for (step, force) in [(6100.0, 0.272146), (12100.0, 1.14743), (18100.0, 2.66962), (24100.0, 4.64251)] {
@@ -279,4 +274,21 @@ fn what_cannot_be_run_has_one_error() {
         assert_eq!(text.matches("error[").count(), 1, "{deck}: {text}");
         assert!(text.contains(word), "{deck}: {text}");
     }
+}
+
+/// ParScale, which computes temperatures inside grains, is not there; LIGGGHTS of Debian stops at these decks, too.
+#[test]
+fn decks_that_want_a_partner_have_one_error() {
+    let Some(there) = copy("ParScale/fluidizedBedTempParScale") else { return };
+    perigrain(there.path(), &["-in", "in.liggghts_init", "-log", "none"]);
+    let text = printed(&perigrain(there.path(), &["check", "in.liggghts_run"]));
+    assert_eq!(text.matches("error[").count(), 1, "{text}");
+    assert!(text.contains("`couple/pascal`, a coupling to another program"), "{text}");
+    // A size at random comes first, then the partner; nothing follows from either.
+    let Some(there) = copy("ParScale/heatTransferBed_paScal") else { return };
+    let text = printed(&perigrain(there.path(), &["check", "in.liggghts"]));
+    assert_eq!(text.matches("error[").count(), 2, "{text}");
+    assert!(text.contains("a random size or density") && text.contains("`couple/pascal`"), "{text}");
+    let text = printed(&perigrain(there.path(), &["-in", "in.liggghts", "-log", "none"]));
+    assert_eq!(text.matches("error[").count(), 1, "{text}");
 }

@@ -106,7 +106,16 @@ pub struct Translator {
 pub fn mark(cmd: &Command) -> Option<String> {
     let command = cmd.name.text.as_str();
     // Lines of decks that have none are dismissed by their command.
-    let may = ["atom_style", "communicate", "hard_particles", "soft_particles", "pair_style", "fix", "dump"];
+    let may = [
+        "atom_style",
+        "communicate",
+        "hard_particles",
+        "soft_particles",
+        "thermo_log",
+        "pair_style",
+        "fix",
+        "dump",
+    ];
     if !may.contains(&command) {
         return None;
     }
@@ -117,7 +126,9 @@ pub fn mark(cmd: &Command) -> Option<String> {
     if !find(cmd).is_some_and(|e| e.mark) {
         return None;
     }
-    let bare = style.is_empty() || command == "communicate" || command.ends_with("_particles");
+    let bare = style.is_empty()
+        || ["communicate", "thermo_log"].contains(&command)
+        || command.ends_with("_particles");
     Some(if bare { command.to_string() } else { format!("{command} {style}") })
 }
 

@@ -55,7 +55,7 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Idle("neighbour lists are set by `neighbor` and `neigh_modify`"),
     ),
-    entry("thermo_log", "", false, Take::Idle("the log has every row of the step table")),
+    entry("thermo_log", "", true, Take::Idle("the log has every row of the step table")),
     entry(
         "coarsegraining",
         "",
