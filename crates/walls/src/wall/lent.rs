@@ -11,7 +11,7 @@ use perigrain_world::World;
 #[derive(Clone, Words)]
 pub struct Lent {
     /// `NULL`: the types of the surfaces behind `of`, each of which has its own.
-    #[word(name = "T|NULL", what = "the type of the wall")]
+    #[word(name = "T", what = "the type of the wall")]
     kind: At<Nullable<OneType>>,
     /// The parts of the laws that the wall has; without this word it has all of them.
     #[word(keyword, name = "part", list, least = 1)]
