@@ -31,7 +31,7 @@ tutorials! {
     moving_mesh_gran: "movingMeshGran", "in.movingMeshGran", 1250..=1450;
     conveyor: "conveyor", "in.conveyor", 382..=382;
     chute_wear: "chute_wear", "in.chute_wear", 800..=860;
-    hydrogel_default: "hydrogel_multicontact", "in.hydrogel_default", 500..=530;
+    hydrogel_default: "hydrogel_multicontact", "in.hydrogel_default", 513..=515;
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
 }
 
@@ -191,7 +191,7 @@ fn what_cannot_be_run_has_one_error() {
 
 /// ParScale, which computes temperatures inside grains, is not there; LIGGGHTS of Debian stops at these decks, too.
 #[test]
-fn decks_that_want_a_partner_have_one_error() {
+fn decks_that_need_a_partner_have_one_error() {
     let Some(there) = copy("ParScale/fluidizedBedTempParScale") else { return };
     perigrain(there.path(), &["-in", "in.liggghts_init", "-log", "none"]);
     let text = printed(&perigrain(there.path(), &["check", "in.liggghts_run"]));

@@ -65,7 +65,7 @@ pub struct Translator {
     heat: Option<heat::Heat>,
     /// Computes that show what LIGGGHTS has as properties of fixes: `f_Temp` for `f_Temp[0]`.
     shown: BTreeSet<String>,
-    /// The deck wants another program: what follows is not looked at.
+    /// The deck needs another program: what follows is not read.
     ended: bool,
     /// IDs of fixes that are only here.
     own: BTreeSet<String>,
