@@ -278,7 +278,7 @@ fn what_cannot_be_run_has_one_error() {
 
 /// ParScale, which computes temperatures inside grains, is not there; LIGGGHTS of Debian stops at these decks, too.
 #[test]
-fn decks_that_want_a_partner_have_one_error() {
+fn decks_that_need_a_partner_have_one_error() {
     let Some(there) = copy("ParScale/fluidizedBedTempParScale") else { return };
     perigrain(there.path(), &["-in", "in.liggghts_init", "-log", "none"]);
     let text = printed(&perigrain(there.path(), &["check", "in.liggghts_run"]));

@@ -77,7 +77,7 @@ pub struct Translator {
     heat: Option<heat::Heat>,
     /// Computes that show what LIGGGHTS has as properties of fixes: `f_Temp` for `f_Temp[0]`.
     shown: BTreeSet<String>,
-    /// The deck wants another program: what follows is not looked at.
+    /// The deck needs another program: what follows is not read.
     ended: bool,
     /// Models of walls above `pair_style`.
     early: Vec<model::Given>,

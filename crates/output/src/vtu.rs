@@ -220,7 +220,7 @@ pub fn write_list(path: &Path, piece: &Path, points: Values<'_>, arrays: &[Array
     file::replace(path, |w| w.write_all(xml.as_bytes()))
 }
 
-/// Writes points with data at a time to a file that appears whole or not at all; its ending says which kind of data set they are. All
+/// Writes points with data at a time to a file that appears whole or not at all; its ending chooses the kind of data set. All
 /// arrays have one entry per point.
 pub fn write(
     path: &Path,

@@ -50,7 +50,7 @@ impl Level {
 pub struct Columns {
     scalars: Named<Vec<f64>>,
     vectors: Named<Vec<[f64; 3]>>,
-    /// What particles that join have in a scalar column, where that is not 0: lines of a deck say it.
+    /// What particles that join have in a scalar column, where that is not 0; lines of a deck set it, files do not hold it.
     #[serde(skip)]
     starts: Vec<(Numbers, f64)>,
 }
