@@ -6,7 +6,7 @@ import tempfile
 from beside import REFUSED, ROW, run
 
 # LIGGGHTS refuses what perigrain need not: moduli below its bound, walls outside of its box.
-ERROR = re.compile(r"^(ERROR|error|thread .* panicked|\[?.*Signal: )")
+ERROR = re.compile(r"^(ERROR|error|thread .* panicked|\[?.*Signal: |with errorcode)")
 
 
 def table(text):
@@ -48,8 +48,8 @@ def far(names, a, b, limit, only=None):
     scales = {}
     for row in a:
         for name, value in zip(names, row):
-            # Lengths count by a millimetre; a number below 1e-13 is what is left of sums.
-            scales[kind(name)] = max(scales.get(kind(name), 1e-3 if name in "xyz" else 1e-13), abs(value) if name not in "xyz" else 0)
+            # Lengths count by a millimetre, forces on surfaces by a millionth; a number below 1e-13 is what is left of sums.
+            scales[kind(name)] = max(scales.get(kind(name), 1e-3 if name in "xyz" else 1e-6 if "[" in name else 1e-13), abs(value) if name not in "xyz" else 0)
     worst = (0, None)
     for row, other in zip(a, b):
         for name, value, ours in zip(names, row, other):
