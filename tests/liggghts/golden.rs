@@ -113,7 +113,6 @@ const DECKS: &[(&str, Expect)] = &[
     ("servo_ki", DIGITS),
     ("servo_scale", DIGITS),
     ("servo_windup", DIGITS),
-    ("set_diameter", DIGITS),
     ("sjkr2_pair", DIGITS),
     ("sjkr2_unequal", DIGITS),
     ("sjkr2_wall", DIGITS),

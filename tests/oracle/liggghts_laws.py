@@ -66,7 +66,9 @@ def models(r, types):
     given = switches(r, *of_pair)
     pair = f"{words(*of_pair)} {' '.join(given)}".strip()
     if types == 1 and r.random() < 0.2:
-        own = parts(r)
+        # Without friction: arms on such walls differ.
+        normal, _, cohesion, _ = parts(r)
+        own = (normal, "", cohesion, "")
         return pair, (words(*own), " ".join(switches(r, *own))), True
     normal, tangential, cohesion, rolling = of_pair
     of_wall = (normal, r.choice([tangential, tangential, tangential, "off"]), r.choice([cohesion, cohesion, ""]), r.choice([rolling, rolling, ""]))

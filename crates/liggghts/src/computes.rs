@@ -2,8 +2,8 @@
 
 use crate::Translator;
 use crate::native::Line;
-use crate::reading::{inside, rounded, without_counterpart};
-use perigrain_base::diag::Result;
+use crate::reading::{rounded, without_counterpart};
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command, Word};
 
 impl Translator {
@@ -35,37 +35,30 @@ const FOREIGN: &[(&str, &str, &str)] = &[
     ("sphkernel", "a fluid of particles", "grains and solids alone are computed here"),
 ];
 
-/// The mass that keeps a grain's density.
-const MASS: &str = "liggghts_mass";
-
-/// `set … diameter D` keeps the density (measured), and not the mass as in LAMMPS.
-fn set_diameter(cmd: &Command, diameter: usize) -> Option<Vec<Command>> {
-    let new = cmd.args.get(diameter + 1)?;
-    if ["mass", "density"].iter().any(|name| cmd.args.iter().any(|w| w.text == *name)) {
-        return None;
+impl Translator {
+    /// `set …`: a diameter alone keeps the density in LIGGGHTS (measured), which is noted once.
+    pub(crate) fn set(&mut self, cmd: &Command) -> Result<Option<Vec<Command>>> {
+        let at = |name: &str| cmd.args.iter().find(|w| w.text == name);
+        if let (Some(word), None, None) = (at("diameter"), at("density"), at("mass"))
+            && self.idle.insert("set diameter".into())
+        {
+            let text = "`set diameter` keeps the mass of grains here, and their density in LIGGGHTS";
+            let note = Diagnostic::note(Code::DIALECT, word.span, text);
+            self.notes.push(note.help("write `density` behind it, here or in a line below"));
+        }
+        ordered(cmd)
     }
-    let mut mass = Line::new(cmd, "variable");
-    mass.put(&format!("{MASS} atom mass*({}/(2*radius))^3", inside(new)), new.span);
-    let mut line = Line::new(cmd, "set");
-    line.words(&cmd.args[..2]).put(&format!("mass v_{MASS}"), new.span).words(&cmd.args[2..]);
-    let mut done = Line::new(cmd, "variable");
-    done.put(&format!("{MASS} delete"), new.span);
-    Some(vec![mass.done(), line.done(), done.done()])
 }
 
-/// `set … density … diameter …`: the density counts for the new diameter, in whichever order they stand; a diameter alone keeps it.
-pub(crate) fn set(cmd: &Command) -> Result<Option<Vec<Command>>> {
+/// `set … density … diameter …`: the density counts for the new diameter, in whichever order they stand.
+fn ordered(cmd: &Command) -> Result<Option<Vec<Command>>> {
     for word in &cmd.args {
         if let Some((_, what, help)) = FOREIGN.iter().find(|(name, _, _)| *name == word.text) {
             return Err(without_counterpart(word, what, help).into());
         }
     }
     let at = |name: &str| cmd.args.iter().position(|w| w.text == name);
-    let (density, diameter) = match (at("density"), at("diameter")) {
-        (Some(density), Some(diameter)) => (density, diameter),
-        (None, Some(diameter)) if diameter > 1 => return Ok(set_diameter(cmd, diameter)),
-        _ => return Ok(None),
-    };
+    let (Some(density), Some(diameter)) = (at("density"), at("diameter")) else { return Ok(None) };
     if density > diameter || diameter + 1 >= cmd.args.len() {
         return Ok(None);
     }

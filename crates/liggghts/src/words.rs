@@ -1,6 +1,6 @@
 //! The words of LIGGGHTS by command and style, each with what becomes of it: recognition, `known:` lists and messages come from here.
 
-use crate::{Translator, computes, contacts, dumps, idle, old, properties};
+use crate::{Translator, contacts, dumps, idle, old, properties};
 use perigrain_base::diag::Result;
 use perigrain_lang::{Args, Command};
 
@@ -230,7 +230,7 @@ pub(crate) const TABLE: &[Entry] = &[
         false,
         Take::Refused("a wedge", "`region intersect` of a cylinder and prisms or blocks"),
     ),
-    entry("set", "", false, Take::Lines(|_, cmd, _| computes::set(cmd))),
+    entry("set", "", false, Take::Lines(|t, cmd, _| t.set(cmd))),
     entry("run", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("thermo", "", false, Take::Lines(|t, cmd, _| Ok(t.first_whole(cmd, 0)))),
     entry("unfix", "", false, Take::Lines(|t, cmd, _| Ok(t.unfix(cmd)))),
