@@ -34,10 +34,14 @@ fn coefficients(cmd: &Command) -> Result<String, &'static str> {
     if has("hooke/velocity") || has("hooke/hysteresis") {
         return Err("no such normal law");
     }
-    if has("slip") {
-        return Err("the spring of `mindlin` slides otherwise: leave `slip spring` out");
-    }
     let mut words: Vec<Word> = cmd.args.clone();
+    if let Some(k) = words.iter().position(|w| w.text == "slip") {
+        if !has("linear_nohistory") {
+            return Err("the spring of `mindlin` slides otherwise: leave `slip spring` out");
+        }
+        // Without a spring the words are about arms of friction, R − δ/2 instead of R.
+        words.drain(k..k + 2);
+    }
     if has("material") {
         return pseudo(&words).ok_or("two materials in one formula");
     }

@@ -90,7 +90,7 @@ fn models_become_laws_of_pairs() {
         // The default of `tangential` is off, that of `model` hertz.
         ("model hertz", "", format!("{hertz} tangential none")),
         ("tangential history", "", history.clone()),
-        ("model hertz tangential no_history", "", format!("{hertz} tangential linear_nohistory NULL 0.5")),
+        ("model hertz tangential no_history", "", format!("{hertz} tangential linear_nohistory NULL 0.5 slip spring")),
         (
             "model hertz tangential history tangential_damping off",
             "",
