@@ -15,7 +15,7 @@ class Scene(list):
     def __init__(self):
         super().__init__()
         self.files = {}
-        self.limit = 1e-6
+        self.limit = 5e-6
         self.only = None
         self.walls = []
 
@@ -75,7 +75,7 @@ def packing(r, types, apart):
 
 def placed(r, deck, grains, types):
     """The lines that make the box and the grains, by single ones, a lattice or a data file."""
-    # LIGGGHTS wants a grain of type 1.
+    # LIGGGHTS needs a grain of type 1.
     grains[0] = (*grains[0][:3], 1)
     speed, spin = r.choice([(0.02, 2), (0.3, 40), (1.0, 200)])
     motion = [(vector(r, speed), vector(r, spin)) for _ in grains]
@@ -154,7 +154,7 @@ def changes(r, deck, grains, steps, yields, types):
         k = r.randint(1, grains)
         v, w = vector(r, 0.2), vector(r, 30)
         both = [line.split()[1] for line in deck if line.startswith(("fix w0 ", "fix mv0 ", "fix wm "))]
-        # Where nothing has changed, perigrain goes on with the forces of the last step, and LIGGGHTS evaluates dashpots anew.
+        # Where nothing has changed, perigrain continues with the forces of the last step, and LIGGGHTS evaluates dashpots anew.
         deck += r.choice([[f"unfix {name}"] for name in both] + [
             [f"displace_atoms few move {v[0] / 1000:.6g} 0 {v[2] / 1000:.6g} units box"],
             [f"set atom {k} vx {v[0]} vy {v[1]}"],
@@ -163,7 +163,7 @@ def changes(r, deck, grains, steps, yields, types):
             [f"velocity rest set 0 0 {v[2]}"],
             ["fix grav all gravity 9.81 vector 0 1 -1"],
             [f"set type 1 density {number(r, 1500, 4000)}"],
-            [f"set group all diameter {number(r, 0.006, 0.008)}"],
+            [f"set group all diameter {number(r, 0.006, 0.008)} density {number(r, 1500, 4000)}"],
             [f"fix m4 all property/global coefficientFriction peratomtypepair {types} {' '.join(['0.3'] * types ** 2)}"],
         ])
         deck.append(f"run {max(1, steps // 2)}")
@@ -173,11 +173,11 @@ def liggghts(r):
     """A deck."""
     deck = Scene()
     many, types, sides = r.random() < 0.6, r.choice([1, 1, 2, 3]), r.choice(["f f f", "f f f", "m m m", "p f f", "f p f"])
-    of_pair, of_wall = models(r, types)
+    of_pair, of_wall, own = models(r, types)
     # In setups LIGGGHTS adds the step's share to the torque of a rolling spring, and does not keep what a contact has yielded: these begin apart.
     yields = any(word in of_pair + of_wall[0] for word in ("hysteresis", "epsd"))
     grains = packing(r, types, 1.0 if yields else 0.98) if many else pair(r, types, yields)
-    room = Room(grains, many, EDGE, sides, 0.0 if yields else 1.0)
+    room = Room(grains, many, EDGE, sides, 0.0 if yields else 1.0, own)
     deck.walls += walls(r, types, of_wall, room)
     watched = surfaces(r, deck, types, of_wall, room)
     deck += ["atom_style granular", "atom_modify map array sort 0 0", f"boundary {sides}", "newton off", "communicate single vel yes", "units si"]

@@ -280,11 +280,12 @@ impl Granular {
         } else {
             normal_force.most(zero)
         };
-        let load = normal_force;
+        let mut load = normal_force;
         if self.cohesion != Cohesion::None && !self.cohesion.spans() {
             normal_force = normal_force - self.cohesion.pull(g, self.is_on_wall);
             if self.cohesion.reduces() {
                 carried = normal_force.abs();
+                load = normal_force;
             }
         }
 

@@ -56,7 +56,7 @@ pub(crate) struct Turn<R> {
     pub omega: Vec3<R>,
     /// The normal load for friction.
     pub carried: R,
-    /// |F_n| with its dashpot, without cohesion.
+    /// |F_n| with its dashpot, without cohesion, or with it where that reduces friction.
     pub load: R,
     /// Contact radius, and F_n/δ of the elastic force.
     pub a: R,

@@ -3,7 +3,7 @@
 use crate::Translator;
 use crate::native::Line;
 use crate::reading::{rounded, without_counterpart};
-use perigrain_base::diag::Result;
+use perigrain_base::diag::{Code, Diagnostic, Result};
 use perigrain_lang::{Args, Command, Word};
 
 impl Translator {
@@ -35,8 +35,23 @@ const FOREIGN: &[(&str, &str, &str)] = &[
     ("sphkernel", "a fluid of particles", "grains and solids alone are computed here"),
 ];
 
+impl Translator {
+    /// `set …`: a diameter alone keeps the density in LIGGGHTS (measured), which is noted once.
+    pub(crate) fn sized(&mut self, cmd: &Command) -> Result<Option<Vec<Command>>> {
+        let at = |name: &str| cmd.args.iter().find(|w| w.text == name);
+        if let (Some(word), None, None) = (at("diameter"), at("density"), at("mass"))
+            && self.idle.insert("set diameter".into())
+        {
+            let text = "`set diameter` keeps the mass of grains here, and their density in LIGGGHTS";
+            let note = Diagnostic::note(Code::DIALECT, word.span, text);
+            self.notes.push(note.help("write `density` behind it, here or in a line below"));
+        }
+        ordered(cmd)
+    }
+}
+
 /// `set … density … diameter …`: the density counts for the new diameter, in whichever order they stand.
-pub(crate) fn set(cmd: &Command) -> Result<Option<Vec<Command>>> {
+fn ordered(cmd: &Command) -> Result<Option<Vec<Command>>> {
     for word in &cmd.args {
         if let Some((_, what, help)) = FOREIGN.iter().find(|(name, _, _)| *name == word.text) {
             return Err(without_counterpart(word, what, help).into());

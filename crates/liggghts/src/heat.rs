@@ -1,7 +1,6 @@
 //! `fix heat/gran`: conduction of heat through contacts, and what it gives grains: `Temp`, `heatFlux`, `heatSource`.
 
 use crate::Translator;
-use crate::computes;
 use crate::model::Model;
 use crate::native::{Line, instead};
 use crate::reading::{choice, inside, number, unknown, value, without_counterpart};
@@ -161,7 +160,7 @@ impl Translator {
             cmd.args.get(k).is_some_and(|w| ["property/atom", "property/peratom"].contains(&&*w.text))
         };
         if !(0..cmd.args.len()).any(at) {
-            return computes::set(cmd);
+            return self.sized(cmd);
         }
         let mut line = Line::new(cmd, "set");
         let (mut k, mut changes) = (0, false);
@@ -190,7 +189,7 @@ impl Translator {
             return Ok(Some(vec![]));
         }
         let line = line.done();
-        Ok(Some(computes::set(&line)?.unwrap_or_else(|| vec![line])))
+        Ok(Some(self.sized(&line)?.unwrap_or_else(|| vec![line])))
     }
 
     /// A line with native references in place of `f_Temp[0]` and the like, and the names that columns of a dump keep.

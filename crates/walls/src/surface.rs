@@ -43,8 +43,8 @@ impl Style for Surface {
                    `servo` moves the surface so that it presses on grains with a wanted force. With p the force with \
                    which it presses along the axis and F the wanted value, e = (F − p)/|F| and v = vel_max clamp(kp e + \
                    ki ∫ e dt + kd de/dt, ±1) along the axis; the force is that of the step before, so that nothing \
-                   moves in the first step. The gains are 0.01, 0 and 0 unless given; the integral rests \
-                   while the speed is at its limit.\n\n\
+                   moves in the first step. The gains are 0.01, 0 and 0 unless given; beyond the limit of the speed \
+                   the integral is the one that gives the limit.\n\n\
                    With `mode auto ratio q` the gains are not used: v = u (1 − 9 |p/F|) e for \
                    |p/F| below 0.1, else 0.1 u e, with u = q r/Δt and r the least radius.\n\n\
                    With `ctrlPV torque` it turns about the axis through `com` instead. \
