@@ -84,7 +84,7 @@ const UPWARDS: &[(&str, &[&str])] = &[
 const LONGEST: usize = 600;
 
 /// Past this many lines a crate is two crates.
-const LARGEST: usize = 30_000;
+const LARGEST: usize = 25_000;
 
 #[test]
 fn crates_depend_only_on_what_the_table_lists() {

@@ -68,7 +68,7 @@ impl Translator {
     }
 }
 
-/// `fix ID group nve/limit absolute X`.
+/// `fix ID group nve/limit absolute X`, or `radius_ratio F` of each radius (measured: a step of F R).
 pub(crate) fn limit(cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command>>> {
     let Some(word) = args.peek().cloned() else { return Ok(None) };
     match word.text.as_str() {
@@ -79,8 +79,11 @@ pub(crate) fn limit(cmd: &Command, args: &mut Args) -> Result<Option<Vec<Command
             Ok(Some(vec![line.done()]))
         }
         "radius_ratio" => {
-            let help = "write the length of a step: `nve/limit absolute 0.0001`";
-            Err(without_counterpart(&word, "a step relative to each radius", help).into())
+            let mut line = Line::styled(cmd, "nve/limit");
+            line.put("radius", word.span);
+            args.next();
+            line.words(args.rest());
+            Ok(Some(vec![line.done()]))
         }
         text if text.parse::<f64>().is_ok() || word.unknown || text.contains('$') => Ok(None),
         _ => Err(unknown(&word, "way to limit steps", &["absolute", "radius_ratio"]).into()),
