@@ -237,7 +237,7 @@ fn grains_that_come_later_have_the_initial_temperature() {
     }
     assert_eq!(
         row,
-        last_row(&grains(BEGIN, "run 1\nset group all temperature 500\nrun 1500\nrun 1499"), &[])
+        last_row(&grains(BEGIN, "run 1\nset group all temperature 500\nrun 4000\nrun 3999"), &[])
     );
     // Zeros without the word, as LAMMPS has them.
     let zeros = "fix warm all property/atom temperature heatflow d_power";

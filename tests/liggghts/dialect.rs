@@ -109,9 +109,9 @@ fn translate_writes_a_deck_with_the_same_bits() {
 fn a_check_names_each_word_without_counterpart_once() {
     let there = tempfile::tempdir().unwrap();
     let deck = "atom_style granular\nunits si\nregion b block 0 1 0 1 0 1\ncreate_box 1 b\n\
-                pair_style gran model hertz surface multicontact\npair_coeff * *\n\
-                fix c all couple/cfd couple_every 1 mpi\nfix d all couple/cfd/force\nfix 1 all nve/sphere\n\
-                fix x all propert/global k scalar 1\nrun 1\n";
+                pair_style gran model hertz surface multicontact\npair_coeff * *\nfix 1 all nve/sphere\n\
+                fix x all propert/global k scalar 1\nfix c all couple/cfd couple_every 1 mpi\nfix d all couple/cfd/force\n\
+                run 1\n";
     fs::write(there.path().join("in.odd"), deck).unwrap();
     let text = printed(&perigrain(there.path(), &["check", "in.odd"]));
     assert_eq!(text.matches("error[PG0148]").count(), 2, "{text}");

@@ -140,6 +140,7 @@ const DECKS: &[(&str, Expect)] = &[
     ("timestep_surface_vel", DIGITS),
     ("wall_both_sides", DIGITS),
     ("wall_default_tangential", DIGITS),
+    ("wall_own_cylinder", DIGITS),
     ("wall_spin_arms", DIGITS),
     ("wall_ycylinder_c1_is_z", DIGITS),
     ("wall_zcylinder_outside", DIGITS),

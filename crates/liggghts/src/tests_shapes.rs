@@ -130,5 +130,5 @@ fn wedges_are_intersections() {
     let open = native(
         "variable a equal 20\nregion w wedge axis z center 0 0 radius 3 bounds 0 4 angle0 ${a} angle 45\n",
     );
-    assert!(open[2].contains("$(-sin(${a}*PI/180))") && open[3].contains("$(sin("), "{open:?}");
+    assert!(open[2].contains("$(-sin(v_a*PI/180))") && open[3].contains("$(sin("), "{open:?}");
 }

@@ -187,8 +187,7 @@ impl Translator {
     /// A wall with a law of its own, in a deck of one atom type.
     fn own_law(&mut self, line: &mut Line, given: &Given, place: &Place) -> Result<()> {
         let alone = self.types() == 1 && place.kind.text == "1";
-        let round = place.words[0].text.ends_with("cylinder");
-        if !alone || round {
+        if !alone {
             let reader = &given.reader;
             let text = "the model of this wall has what the model of `pair_style` does not have";
             let d = blame(reader, Code::NO_COUNTERPART, text);

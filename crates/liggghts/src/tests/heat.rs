@@ -85,7 +85,9 @@ fix v all wall/gran model hertz mesh n_meshes 1 meshes s
     // And one with a law of its own, which needs the conductivity.
     let own =
         "fix w all wall/gran model hertz tangential history primitive type 1 zplane 0.0 temperature 800.\n";
-    assert!(warm(own)[0].ends_with("slip spring heat contact 100. zplane 0.0 NULL temperature 800."));
+    assert!(
+        warm(own)[0].ends_with("slip spring heat contact 100. arms middle zplane 0.0 NULL temperature 800.")
+    );
     let text = wrong(&format!("pair_style gran model hertz\n{own}")).to_string();
     assert!(text.contains("stands above `fix heat/gran`"), "{text}");
 }
@@ -138,7 +140,7 @@ fn values_of_variables_stay_formulas() {
     assert_eq!(lines[1], "fix Temp all property/atom temperature initial ${t}");
     assert_eq!(lines[7], "fix hg all heat/flow constant ${c} source d_heatSource");
     let sum = |y: &str| format!("(1-(0.45)^2)/({y})+(1-(0.45)^2)/({y})");
-    let factor = format!("$((({})/({}))^(2/3))", sum("${y}"), sum("5.e6"));
+    let factor = format!("$((({})/({}))^(2/3))", sum("v_y"), sum("5.e6"));
     assert_eq!(lines[8], format!("{HERTZ} heat contact ${{k}} scaled {factor}"));
 }
 
