@@ -229,7 +229,14 @@ impl<V: Lanes<N>, const N: usize> Batch<V, N> {
             let mass = match (self.mass, cx.frozen) {
                 (Some(mass), false) => mass,
                 (None, false) => reduced(V::pick(m, i), V::pick(m, j)),
-                (mass, true) => beside_frozen(V::pick(m, i), V::pick(m, j), self.sides(cx, N * group), mass),
+                (mass, true) => {
+                    let (mi, mj) = (V::pick(m, i), V::pick(m, j));
+                    let zero = mi.like(0.0);
+                    // Two frozen grains seldom touch in a group: tags are looked at where they do.
+                    let both = V::both(zero.above(mi), zero.above(mj));
+                    let side = if V::mask_bits(both) == 0 { zero } else { self.sides(cx, N * group) };
+                    beside_frozen(mi, mj, side, mass)
+                }
             };
             let g = geometry([x, y, z], &sizes, mass);
             self.geometry.put(group, g);
