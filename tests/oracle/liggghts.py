@@ -173,11 +173,11 @@ def liggghts(r):
     """A deck."""
     deck = Scene()
     many, types, sides = r.random() < 0.6, r.choice([1, 1, 2, 3]), r.choice(["f f f", "f f f", "m m m", "p f f", "f p f"])
-    of_pair, of_wall, own = models(r, types)
+    of_pair, of_wall = models(r, types)
     # In setups LIGGGHTS adds the step's share to the torque of a rolling spring, and does not keep what a contact has yielded: these begin apart.
     yields = any(word in of_pair + of_wall[0] for word in ("hysteresis", "epsd"))
     grains = packing(r, types, 1.0 if yields else 0.98) if many else pair(r, types, yields)
-    room = Room(grains, many, EDGE, sides, 0.0 if yields else 1.0, own)
+    room = Room(grains, many, EDGE, sides, 0.0 if yields else 1.0)
     deck.walls += walls(r, types, of_wall, room)
     watched = surfaces(r, deck, types, of_wall, room)
     deck += ["atom_style granular", "atom_modify map array sort 0 0", f"boundary {sides}", "newton off", "communicate single vel yes", "units si"]

@@ -60,18 +60,16 @@ def switches(r, normal, tangential, cohesion, rolling):
 
 
 def models(r, types):
-    """The words of the contact model of pairs, and those of walls with their switches: walls may leave parts out, or have a model of their own, which
-    comes third."""
+    """The words of the contact model of pairs, and those of walls with their switches: walls may leave parts out, or have a model of their
+    own."""
     of_pair = parts(r)
     given = switches(r, *of_pair)
     pair = f"{words(*of_pair)} {' '.join(given)}".strip()
     if types == 1 and r.random() < 0.2:
-        # Without friction: arms on such walls differ.
-        normal, _, cohesion, _ = parts(r)
-        own = (normal, "", cohesion, "")
-        return pair, (words(*own), " ".join(switches(r, *own))), True
+        own = parts(r)
+        return pair, (words(*own), " ".join(switches(r, *own)))
     normal, tangential, cohesion, rolling = of_pair
     of_wall = (normal, r.choice([tangential, tangential, tangential, "off"]), r.choice([cohesion, cohesion, ""]), r.choice([rolling, rolling, ""]))
     lacks = {"tangential_damping": of_wall[1] in ("off", ""), "tangential_reduce": "sjkr" not in of_wall[2] or of_wall[1] != "history",
              "torsionTorque": of_wall[3] in ("", "off")}
-    return pair, (words(*of_wall), " ".join(s for s in given if not lacks.get(s.split()[0]))), False
+    return pair, (words(*of_wall), " ".join(s for s in given if not lacks.get(s.split()[0])))

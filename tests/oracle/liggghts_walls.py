@@ -34,8 +34,8 @@ def depth(grain, distance):
 class Room:
     """The grains of a deck, of which those that are too deep in a new wall go, or the wall does."""
 
-    def __init__(self, grains, many, edge, sides, deepest, own):
-        self.grains, self.many, self.edge, self.sides, self.deepest, self.own = grains, many, edge, sides, deepest, own
+    def __init__(self, grains, many, edge, sides, deepest):
+        self.grains, self.many, self.edge, self.sides, self.deepest = grains, many, edge, sides, deepest
 
     def takes(self, distance, deepest=0.04):
         """Whether a wall may stand there."""
@@ -66,8 +66,7 @@ def walls(r, types, of_wall, room):
         axis = r.choice("xyz")
         k = "xyz".index(axis)
         others = {0: (1, 2), 1: (2, 0), 2: (0, 1)}[k]
-        # perigrain refuses cylinders with a law of their own, which would not count as flat.
-        if room.own or any(room.sides.split()[o] == "p" for o in others):
+        if any(room.sides.split()[o] == "p" for o in others):
             return
         if room.takes(lambda p: abs(float(radius) - math.hypot(*(p[o] - float(c) for o, c in zip(others, centre))))):
             # The y cylinder of LIGGGHTS does not turn under a shear across it.
