@@ -91,3 +91,12 @@ fn check_and_plan_take_surfaces() {
         assert!(command == "check" || text.contains("massflow/mesh"), "{text}");
     }
 }
+
+#[test]
+fn the_reference_point_is_there_before_a_run() {
+    let deck = format!(
+        "{}fix fm all surface flow.stl type 1 about 0.5 -2 3\nvariable z equal f_fm[9]\nprint \"at $(f_fm[7]) $(f_fm[8]) ${{z}} $(f_fm[1])\"\n",
+        head(0.06, 1e-4, 0.7)
+    );
+    assert!(ran(&deck).0.contains("at 0.5 -2 3 0\n"), "{}", ran(&deck).0);
+}

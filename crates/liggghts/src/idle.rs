@@ -85,14 +85,27 @@ impl Translator {
         Some(vec![])
     }
 
-    /// `fix_modify` of what is only in the dialect.
+    /// `fix_modify` of what is only in the dialect, and of a servo, whose options have two names each in LIGGGHTS (measured).
     pub(crate) fn fix_modify(&mut self, cmd: &Command) -> Option<Vec<Command>> {
         let word = cmd.args.first()?;
-        if !self.own.contains(&word.text) {
+        if self.own.contains(&word.text) {
+            self.idle(word, "the line is part of a table that holds for the whole deck");
+            return Some(vec![]);
+        }
+        if !self.surfaces.contains_key(&word.text) {
             return None;
         }
-        self.idle(word, "the line is part of a table that holds for the whole deck");
-        Some(vec![])
+        let mut line = Line::new(cmd, &cmd.name.text);
+        for word in &cmd.args {
+            line.word(&match word.text.as_str() {
+                "integrate" => instead(word, "servo/integrate"),
+                "servo/target_val" | "servo/vel_max" | "servo/ctrlParam" => {
+                    instead(word, word.text.trim_start_matches("servo/"))
+                }
+                _ => word.clone(),
+            });
+        }
+        Some(vec![line.done()])
     }
 
     /// `create_box N …` fixes how many types there are.

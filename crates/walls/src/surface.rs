@@ -281,6 +281,12 @@ impl Fix for Declared {
             mesh.triangles().iter().map(|t| t.map(|p| pose.at(p))).collect()
         };
         w.outlines.insert(Key::new(&self.id), Outline::new(form));
+        // Where the reference point is can be read before a run; what a restart file has brought stays.
+        let slot = w.slots.id(&format!("f_{}", self.id));
+        let vector = &mut w.slots.get_mut(slot).vector;
+        if vector.is_empty() {
+            vector.extend([0.0; 6].iter().chain(&self.surface.about));
+        }
         Ok(())
     }
 

@@ -86,6 +86,20 @@ fn a_property_that_was_refused_is_not_missed_again() {
 }
 
 #[test]
+fn options_of_a_servo_have_two_names() {
+    // All eight change the run in LIGGGHTS 3.8.0.
+    let of = |words: &str| behind(&format!("{MESH}fix_modify m {words}\n")).pop().unwrap();
+    for (words, native) in [
+        ("servo/target_val v_f", "target_val v_f"),
+        ("servo/vel_max 0.5 servo/integrate stop", "vel_max 0.5 servo/integrate stop"),
+        ("servo/ctrlParam 0.1 0. 0.", "ctrlParam 0.1 0. 0."),
+        ("target_val -2. integrate start", "target_val -2. servo/integrate start"),
+    ] {
+        assert_eq!(of(words), format!("fix_modify m {native}"));
+    }
+}
+
+#[test]
 fn averages_over_bins_are_chunks() {
     let lines = behind(
         "fix a all ave/spatial 10 5 100 z lower 0.01 x 0.0 0.02 vx v_t norm sample file a.txt units box write_ts no ave window 3\nunfix a\n\
