@@ -8,12 +8,6 @@ use std::path::{Path, PathBuf};
 
 const FOLDER: &str = "/usr/share/doc/liggghts/examples/LIGGGHTS/Tutorials_public";
 
-/// Whether the longest tutorials run whole as well (`PERIGRAIN_TUTORIALS=whole`): they take five to twelve seconds of the processor each, and
-/// shortened ones run anyway.
-fn whole() -> bool {
-    std::env::var("PERIGRAIN_TUTORIALS").is_ok_and(|text| text == "whole")
-}
-
 /// One test for each tutorial that runs to its end: folder, deck, how many grains there are then. LIGGGHTS 3.8.0 has the same numbers,
 /// but for places that come from random numbers: 1355 of movingMeshGran's 1500, 827 of chute_wear's that stay in the box, two
 /// stones of multisphere, where 1.28 fill the share of the volume,
@@ -41,13 +35,14 @@ tutorials! {
     fluidized_bed_before_its_partner: "ParScale/fluidizedBedTempParScale", "in.liggghts_init", 10..=10;
 }
 
+/// The longest ones, five to twelve seconds of the processor each; shortened ones run in any case.
 #[test]
+#[ignore = "half a minute: `./check --tutorials`"]
 fn long_ones() {
-    if whole() {
-        runs_to_its_end("movingMeshGran", "in.movingMeshGran", 1250..=1450);
-        runs_to_its_end("chute_wear", "in.chute_wear", 800..=860);
-        runs_to_its_end("contactModels", "in.newModels", 1800..=1800);
-    }
+    runs_to_its_end("movingMeshGran", "in.movingMeshGran", 1250..=1450);
+    runs_to_its_end("chute_wear", "in.chute_wear", 800..=860);
+    runs_to_its_end("contactModels", "in.newModels", 1800..=1800);
+    runs_to_its_end("hydrogel_multicontact", "in.hydrogel_default", 513..=515);
 }
 
 /// Tutorials that cannot be run here, with a word of the one error.
@@ -141,8 +136,9 @@ fn a_hot_half_of_a_bed_warms_the_other() {
 }
 
 #[test]
+#[ignore = "seconds: `./check --tutorials`"]
 fn sources_of_heat_add_up() {
-    let Some((rows, grains)) = whole().then(|| heated("heatTransfer_2")).flatten() else { return };
+    let Some((rows, grains)) = heated("heatTransfer_2") else { return };
     let (before, last) = (total(&rows, 2e4), total(&rows, 5e4));
     assert!((before / (grains.len() as f64 * CAPACITY * 300.0) - 1.0).abs() < 1e-7);
     // ±1.5 W for 30,000 steps of 25 µs, in as many grains more on one side than on the other.
@@ -162,13 +158,11 @@ fn total(rows: &[Vec<f64>], step: f64) -> f64 {
 #[test]
 fn a_piston_feels_the_force_of_the_real_one() {
     let Some(there) = copy("hydrogel_multicontact") else { return };
-    if !whole() {
-        // Down to the deepest place, without files for pictures.
-        let file = there.path().join("in.hydrogel_default");
-        let deck = fs::read_to_string(&file).unwrap();
-        let lines = deck.split("# relax piston").next().unwrap().lines().filter(|l| !l.starts_with("dump"));
-        fs::write(&file, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
-    }
+    // Down to the deepest place, without files for pictures.
+    let file = there.path().join("in.hydrogel_default");
+    let deck = fs::read_to_string(&file).unwrap();
+    let lines = deck.split("# relax piston").next().unwrap().lines().filter(|l| !l.starts_with("dump"));
+    fs::write(&file, lines.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
     let out = perigrain(there.path(), &["-in", "in.hydrogel_default", "-log", "none"]);
     let text = printed(&out);
     assert!(out.status.success(), "{}", &text[text.len().saturating_sub(2000)..]);
